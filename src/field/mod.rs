@@ -1,0 +1,33 @@
+//! Fields: everything that has a value at a point and an honest bound over a box.
+//!
+//! The sign is told once: **f < 0 inside, f > 0 outside, f = 0 on the surface**; a signed
+//! distance field measures in millimetres.
+
+use crate::num::{Aabb, Interval};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A scalar field over space, negative inside the shape.
+pub trait Field: Send + Sync {
+    /// The value at `p`; never NaN for finite `p`.
+    fn value(&self, p: DVec3) -> f64;
+
+    /// An enclosure of every value on the box. A promise, never a guess: sparse evaluation skips
+    /// what the bound says is empty. What has no good enclosure answers [`Interval::ALL`].
+    fn bound(&self, b: &Aabb) -> Interval;
+
+    /// A box outside which f > 0.
+    fn support(&self) -> Aabb;
+
+    /// Values at many points: one virtual call a brick instead of one a point. `out` is as long as
+    /// `at`. Must give exactly what [`Field::value`] gives, point by point. Callers order the
+    /// points so that contiguous runs lie close together.
+    fn values(&self, at: &[DVec3], out: &mut [f64]) {
+        for (f, &p) in out.iter_mut().zip(at) {
+            *f = self.value(p);
+        }
+    }
+}
+
+/// A field that several owners read.
+pub type Shared = Arc<dyn Field>;

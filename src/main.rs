@@ -1,0 +1,2 @@
+//! The `fieldgraft` command.
+fn main() {}

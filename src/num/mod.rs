@@ -1,0 +1,7 @@
+//! Intervals and boxes: the two enclosures that every bound is made of.
+
+mod aabb;
+mod interval;
+
+pub use aabb::Aabb;
+pub use interval::Interval;
