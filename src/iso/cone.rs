@@ -117,7 +117,7 @@ impl Index {
             points += edges.count_ones() + patches.apexes;
             triangles += patches.triangles;
         }
-        (points > 0).then_some(Self {
+        (points > 0 || triangles > 0).then_some(Self {
             brick,
             tags,
             points,

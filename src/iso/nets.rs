@@ -88,9 +88,9 @@ impl Net {
         mut chunk: Chunk,
         buffer: &mut SurfaceNetsBuffer,
     ) -> Self {
-        // an infinity beside a crossing would make its position no number
+        // an infinity beside a crossing would make its position NaN
         for v in &mut chunk.samples {
-            *v = v.clamp(-1e30, 1e30);
+            *v = if v.is_nan() { 1e30 } else { v.clamp(-1e30, 1e30) };
         }
         surface_nets(&chunk.samples, &Shape {}, [0; 3], [9; 3], buffer);
         let mut net = Self {
