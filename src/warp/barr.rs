@@ -352,7 +352,7 @@ mod tests {
     fn the_bend_is_an_arc() {
         // a quarter circle of length 400: radius 400 / (pi/2), ends turned by 45 degrees
         let barr = Barr::new(
-            &Deform::new(0.0, 1.0, 1.570_796_326_794_896_6).unwrap(),
+            &Deform::new(0.0, 1.0, std::f64::consts::FRAC_PI_2).unwrap(),
             HALF,
         );
         let r = 400.0 / std::f64::consts::FRAC_PI_2;

@@ -57,13 +57,13 @@ impl Deform {
 
     /// Checked: twist within ten turns, taper positive, bend less than a full turn.
     pub fn new(twist: f64, taper: f64, bend: f64) -> Result<Self, WarpError> {
-        if !(twist.abs() <= TWIST_LIMIT) {
+        if !twist.is_finite() || twist.abs() > TWIST_LIMIT {
             return Err(WarpError::Twist(twist));
         }
         if !(1.0 / TAPER_LIMIT..=TAPER_LIMIT).contains(&taper) {
             return Err(WarpError::Taper(taper));
         }
-        if !(bend.abs() < 2.0 * PI) {
+        if !bend.is_finite() || bend.abs() >= 2.0 * PI {
             return Err(WarpError::Bend(bend));
         }
         Ok(Self { twist, taper, bend })

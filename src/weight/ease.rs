@@ -65,7 +65,8 @@ impl Ease {
             return Err(EaseError::Ends(first[0], last[0]));
         }
         for (at, w) in pairs.windows(2).enumerate() {
-            if !(w[0][0] < w[1][0]) {
+            let increases = w[0][0] < w[1][0];
+            if !increases {
                 return Err(EaseError::Order {
                     at: at + 1,
                     before: w[0][0],
