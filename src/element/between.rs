@@ -68,11 +68,7 @@ impl Between {
     pub fn image(&self, b: &Aabb) -> Aabb {
         match &self.road {
             Road::Same => *b,
-            Road::Affine { map, .. } => {
-                let centre = map.transform_point3(b.centre());
-                let half = map.matrix3.abs() * (b.size() * 0.5);
-                Aabb::around(centre, half).grow(slack(centre, half))
-            }
+            Road::Affine { map, .. } => affine_image(map, b),
             Road::Deformed(s) => {
                 let ball = s.ball(b);
                 let half = DVec3::splat(ball.radius);
@@ -80,6 +76,41 @@ impl Between {
             }
         }
     }
+
+    /// A box that holds `self.pull(p) - other.pull(p)` for every point of the box: far smaller than
+    /// the two images where the maps are nearly parallel.
+    pub fn difference(&self, other: &Between, b: &Aabb) -> Aabb {
+        if let (Some(f), Some(g)) = (self.road.affine(), other.road.affine()) {
+            let map = DAffine3 {
+                matrix3: f.matrix3 - g.matrix3,
+                translation: f.translation - g.translation,
+            };
+            // what cancels had the size of the points themselves
+            let size = self.image(b).centre().abs() + other.image(b).centre().abs();
+            return affine_image(&map, b)
+                .grow(slack(size, f.translation.abs() + g.translation.abs()));
+        }
+        let (f, g) = (self.image(b), other.image(b));
+        Aabb::new(f.min - g.max, f.max - g.min)
+    }
+}
+
+impl Road {
+    /// The whole map, where it is affine.
+    fn affine(&self) -> Option<DAffine3> {
+        match self {
+            Self::Same => Some(DAffine3::IDENTITY),
+            Self::Affine { map, .. } => Some(*map),
+            Self::Deformed(_) => None,
+        }
+    }
+}
+
+/// A box round the image of a box under an affine map.
+fn affine_image(map: &DAffine3, b: &Aabb) -> Aabb {
+    let centre = map.transform_point3(b.centre());
+    let half = map.matrix3.abs() * (b.size() * 0.5);
+    Aabb::around(centre, half).grow(slack(centre, half))
 }
 
 /// Covers the round-off of a map's few operations.

@@ -130,9 +130,12 @@ proptest! {
         let cell = Aabb::around(a.centre + c, h.abs());
         let image = map.image(&cell);
         let stretch = map.stretch(&cell);
+        let other = a.between(&Element { deform: Deform::NONE, ..a.mirrored(0) });
+        let difference = map.difference(&other, &cell);
         for u in us {
             let p = cell.centre() + u * h;
             prop_assert!(image.contains(map.pull(p)));
+            prop_assert!(difference.contains(map.pull(p) - other.pull(p)));
             let q = cell.clamp(p + u * 1e-3);
             let moved = map.pull(p).distance(map.pull(q));
             prop_assert!(moved <= stretch * p.distance(q) + 1e-8);
