@@ -1,5 +1,31 @@
 //! Triangle meshes and their files. A [`TriMesh`] is plain data: points in millimetres, Z up,
 //! faces counter-clockwise seen from outside.
+//!
+//! [`read`] takes files as they are: what is odd about their geometry is counted in [`Found`], not
+//! refused. [`write()`] makes files that read back as the same mesh, or none.
+//!
+//! - A *shell* is a set of faces that hang together by edges; it is *open* when one of its edges
+//!   has a single face.
+//! - To *weld* is to merge points at exactly the same position; to *snap* is to round positions to
+//!   f32, as files hold them.
+
+mod edges;
+mod error;
+mod found;
+mod frame;
+mod polygon;
+mod read;
+mod soup;
+mod weld;
+mod write;
+
+pub use edges::shells;
+pub use error::MeshError;
+pub use found::Found;
+pub use frame::{Assume, Unit, UnknownWord, Up};
+pub use read::{Loaded, read};
+pub use weld::{snap, weld};
+pub use write::{check_output, write};
 
 use crate::num::Aabb;
 use glam::{DAffine3, DVec3};
@@ -21,7 +47,12 @@ impl TriMesh {
 
     /// The box round all points that a face uses; empty for a mesh without faces.
     pub fn bounds(&self) -> Aabb {
-        Aabb::of(self.faces.iter().flatten().map(|&v| self.points[v as usize]))
+        Aabb::of(
+            self.faces
+                .iter()
+                .flatten()
+                .map(|&v| self.points[v as usize]),
+        )
     }
 
     /// Half the cross product of two edges of face `i`: its normal, as long as its area (mm²).
@@ -32,7 +63,9 @@ impl TriMesh {
 
     /// Total area in mm².
     pub fn area(&self) -> f64 {
-        (0..self.faces.len()).map(|i| self.area_vector(i).length()).sum()
+        (0..self.faces.len())
+            .map(|i| self.area_vector(i).length())
+            .sum()
     }
 
     /// Signed volume in mm³ by the divergence theorem; meaningful for a closed mesh.
@@ -67,6 +100,7 @@ impl TriMesh {
     pub fn append(&mut self, other: &TriMesh) {
         let shift = self.points.len() as u32;
         self.points.extend_from_slice(&other.points);
-        self.faces.extend(other.faces.iter().map(|f| f.map(|v| v + shift)));
+        self.faces
+            .extend(other.faces.iter().map(|f| f.map(|v| v + shift)));
     }
 }
