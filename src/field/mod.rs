@@ -3,6 +3,7 @@
 //! The sign is told once: **f < 0 inside, f > 0 outside, f = 0 on the surface**; a signed
 //! distance field measures in millimetres.
 
+pub mod mesh;
 pub mod sample;
 pub mod sampled;
 
