@@ -1,0 +1,181 @@
+//! What a method needs to be told; the scene fills it in, [`super::build`] checks it.
+
+use crate::element::Element;
+use crate::field::Shared;
+use crate::weight::{Ease, Weighting};
+
+/// A shape that takes part in a morph.
+#[derive(Clone)]
+pub struct Part {
+    /// Name, as in the recipe.
+    pub name: String,
+    /// Signed distance, mm; looked up many times, so usually a sampled form.
+    pub field: Shared,
+}
+
+/// A feature: one element on every shape, all aligned to each other.
+#[derive(Clone, Debug)]
+pub struct Feature {
+    /// Name, as in the recipe.
+    pub name: String,
+    /// One element a shape, in the order of the shapes.
+    pub elements: Vec<Element>,
+    /// Shape weights and frame weights of this feature.
+    pub morph: Course,
+    /// Weights of the frames; apart from the shapes' (paper 001, section 3.2).
+    pub deform: Course,
+    /// Offset d of paper 001, eq. 6, mm; positive thickens.
+    pub offset: f64,
+}
+
+/// How the weights of the shapes depend on time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Course {
+    /// Two shapes: weights (1 - u(t), u(t)).
+    Pair(Ease),
+    /// Any number of shapes: the same positive weights at every time, not yet normalised.
+    Fixed(Vec<f64>),
+}
+
+impl Course {
+    /// Weights at `t`, one a shape, summing to one.
+    pub fn at(&self, t: f64) -> Vec<f64> {
+        match self {
+            Self::Pair(ease) => {
+                let u = ease.at(t);
+                vec![1.0 - u, u]
+            }
+            Self::Fixed(w) => {
+                let sum: f64 = w.iter().sum();
+                w.iter().map(|x| x / sum).collect()
+            }
+        }
+    }
+}
+
+/// What the features' weights blend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blend {
+    /// The positions: one blended look-up a shape.
+    Maps,
+    /// The morphed fields: paper 001, eqs 1 and 8 to the letter.
+    Fields,
+}
+
+/// The morphing function f_m inside the features, or of the whole shapes where there are none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inner {
+    /// The weighted mean of the fields (paper 001, eq. 2).
+    Linear,
+    /// Bounded blending in space-time (METHODS B).
+    SpaceTime,
+    /// The lesser shapes grow out of the dominant one.
+    Grow,
+    /// The lesser shapes shrink towards the dominant one.
+    Erode,
+    /// Feature by feature: linear with an offset where the shapes overlap, grow where not.
+    Auto,
+}
+
+/// Which frames the features of the result have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frames {
+    /// The weighted mean of the shapes' frames.
+    Average,
+    /// The frames of one shape, by its index.
+    Of(usize),
+}
+
+/// Base of the space-time blend of k shapes (METHODS B).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// The weighted mean plus the pairs' bounded blends.
+    L,
+    /// The union of the lowered shapes plus the pairs' bounded blends.
+    S,
+    /// Two half-cylinders in space-time joined by a bounded blend (Pasko et al. 2004); pairs only.
+    HalfCylinders,
+}
+
+/// Parameters of space-time blending; `None` is chosen from the shapes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpaceTime {
+    /// Which form.
+    pub form: Form,
+    /// Height of the blend, mm; by default the one that keeps the weighted mean volume.
+    pub a0: Option<f64>,
+    /// Reach of the blend from each shape, mm; by default the largest one-sided Hausdorff distance.
+    pub a: Option<Vec<f64>>,
+    /// Reach in time.
+    pub a3: f64,
+}
+
+impl Default for SpaceTime {
+    fn default() -> Self {
+        Self { form: Form::L, a0: None, a: None, a3: 1.0 }
+    }
+}
+
+/// Everything a morph is made from.
+#[derive(Clone)]
+pub struct Plan {
+    /// The shapes, two or more.
+    pub shapes: Vec<Part>,
+    /// Features; empty for a morph of whole shapes.
+    pub features: Vec<Feature>,
+    /// Weights of whole shapes, for a morph without features.
+    pub course: Course,
+    /// What the weights blend.
+    pub blend: Blend,
+    /// Morphing function.
+    pub inner: Inner,
+    /// How feature distances become weights.
+    pub weighting: Weighting,
+    /// Weighting of the shape weights in the maps blend; sharper than that of the positions.
+    pub sharp: Weighting,
+    /// Frames of the result.
+    pub frames: Frames,
+    /// Parameters of [`Inner::SpaceTime`].
+    pub space_time: SpaceTime,
+    /// Step of the lattice on which automatic parameters are measured, mm.
+    pub probe: f64,
+}
+
+/// What keeps a plan from being carried out.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MorphError {
+    /// Fewer than two shapes.
+    #[error("a morph needs two shapes or more, got {0}")]
+    Shapes(usize),
+    /// An element is missing or there is one too many.
+    #[error("feature `{feature}` has {got} elements for {shapes} shapes")]
+    Unpaired {
+        /// Its name.
+        feature: String,
+        /// Elements given.
+        got: usize,
+        /// Shapes of the morph.
+        shapes: usize,
+    },
+    /// Weights that cannot be normalised.
+    #[error("{at}: weights must be {shapes} numbers, none negative, not all zero")]
+    Weights {
+        /// Feature name, or `default`.
+        at: String,
+        /// Shapes of the morph.
+        shapes: usize,
+    },
+    /// A form that takes two shapes only.
+    #[error("space-time form `half-cylinders` takes two shapes, got {0}; use `l` or `s`")]
+    PairOnly(usize),
+    /// A number out of its range.
+    #[error("{what} must be {expected}, got {got}")]
+    Range {
+        /// Which number.
+        what: String,
+        /// What is allowed.
+        expected: &'static str,
+        /// What was given.
+        got: f64,
+    },
+}
