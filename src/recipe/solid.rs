@@ -225,18 +225,7 @@ impl Part {
             self.ellipsoid.as_ref().map(Primitive::Ellipsoid),
             self.prism.as_ref().map(Primitive::Prism),
         ];
-        let mut given = all.into_iter().flatten();
-        match (given.next(), given.next()) {
-            (Some(one), None) => Ok(one),
-            (None, _) => Err(Problem::new(
-                at,
-                "no shape: give box, cylinder, capsule, ellipsoid or prism",
-            )),
-            (Some(a), Some(b)) => Err(Problem::new(
-                at,
-                format!("both `{}` and `{}`; give one shape", a.key(), b.key()),
-            )),
-        }
+        only(all, at)?.ok_or_else(|| Problem::new(at, NO_SHAPE))
     }
 
     fn validate(&self, at: &str) -> Result<(), Problem> {
@@ -258,7 +247,36 @@ impl Part {
     }
 }
 
+/// What to say of an entry without a shape.
+pub(super) const NO_SHAPE: &str =
+    "no shape: give box, cylinder, capsule, ellipsoid, prism or, for features, mesh";
+
+/// The only primitive given, if any.
+pub(super) fn only<'a>(
+    all: [Option<Primitive<'a>>; 5],
+    at: &str,
+) -> Result<Option<Primitive<'a>>, Problem> {
+    let mut given = all.into_iter().flatten();
+    match (given.next(), given.next()) {
+        (Some(a), Some(b)) => {
+            let why = format!("both `{}` and `{}`; give one shape", a.key(), b.key());
+            Err(Problem::new(at, why))
+        }
+        (one, _) => Ok(one),
+    }
+}
+
 impl Primitive<'_> {
+    /// Radius of its rounded edges, mm.
+    pub fn round(&self) -> f64 {
+        match self {
+            Primitive::Box(b) => b.round,
+            Primitive::Cylinder(c) => c.round,
+            Primitive::Prism(p) => p.round,
+            Primitive::Capsule(_) | Primitive::Ellipsoid(_) => 0.0,
+        }
+    }
+
     /// The key it stands under.
     pub fn key(&self) -> &'static str {
         match self {

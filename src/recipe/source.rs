@@ -215,7 +215,7 @@ pub(super) fn join(above: &str, name: &str) -> String {
 }
 
 /// A parser's message in one line, with the name that was probably meant.
-fn explain(message: &str) -> String {
+pub(super) fn explain(message: &str) -> String {
     let message = message.trim().replace('\n', ", ");
     let mut ticks = message.split('`').skip(1).step_by(2);
     let unknown = message.starts_with("unknown field") || message.starts_with("unknown variant");
