@@ -1,0 +1,241 @@
+//! Where things stand in a recipe's text: keys to lines, and parse errors to keys.
+
+use super::near::did_you_mean;
+use serde::de::DeserializeOwned;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use toml::de::{DeTable, DeValue};
+
+/// Something wrong at a key, before the file and line are known.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{at}: {why}")]
+pub struct Problem {
+    /// The key, such as `features[2].on.lounge.box.size`; empty for the whole file.
+    pub at: String,
+    /// What is wrong, got and expected.
+    pub why: String,
+}
+
+impl Problem {
+    /// A problem at a key.
+    pub fn new(at: impl Into<String>, why: impl Into<String>) -> Self {
+        Self {
+            at: at.into(),
+            why: why.into(),
+        }
+    }
+}
+
+/// A recipe or solid that cannot be used: file, line, key, cause.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}{}: {}{why}", .file.display(), line_tag(.line), colon(.at))]
+pub struct RecipeError {
+    /// The file as it was named.
+    pub file: PathBuf,
+    /// The line, counted from 1, where it is known.
+    pub line: Option<usize>,
+    /// The key; empty for the whole file.
+    pub at: String,
+    /// What is wrong.
+    pub why: String,
+}
+
+fn line_tag(line: &Option<usize>) -> String {
+    line.map_or_else(String::new, |n| format!(":{n}"))
+}
+
+fn colon(at: &str) -> String {
+    if at.is_empty() {
+        String::new()
+    } else {
+        format!("{at}: ")
+    }
+}
+
+/// A text, its name, and where its keys stand.
+#[derive(Clone, Debug)]
+pub struct Source {
+    file: PathBuf,
+    text: String,
+    /// Key and the bytes of its name or value.
+    places: Vec<(String, Range<usize>)>,
+}
+
+/// Deepest nesting that is read.
+const DEEPEST: usize = 64;
+
+impl Source {
+    /// Reads a text into `T`; JSON when the name ends in `.json`, else TOML.
+    ///
+    /// # Errors
+    /// Bad grammar, an unknown key (with the nearest known one), a wrong type.
+    pub fn read<T: DeserializeOwned>(text: &str, file: &Path) -> Result<(T, Self), RecipeError> {
+        let json = file
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        let mut source = Self {
+            file: file.to_owned(),
+            text: text.to_owned(),
+            places: Vec::new(),
+        };
+        if json {
+            source.read_json()
+        } else {
+            source.read_toml()
+        }
+        .map(|t| (t, source))
+    }
+
+    /// The name the text was given.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// The text itself.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Adds file and line to a problem.
+    pub fn locate(&self, p: Problem) -> RecipeError {
+        RecipeError {
+            file: self.file.clone(),
+            line: self.line_of(&p.at),
+            at: p.at,
+            why: p.why,
+        }
+    }
+
+    /// The line of a key, or of the nearest key above it that is there.
+    pub fn line_of(&self, key: &str) -> Option<usize> {
+        let mut key = key;
+        while !key.is_empty() {
+            if let Some((_, at)) = self.places.iter().find(|(k, _)| k == key) {
+                return Some(self.line_at(at.start));
+            }
+            key = key.rfind(['.', '[']).map_or("", |cut| &key[..cut]);
+        }
+        None
+    }
+
+    fn line_at(&self, offset: usize) -> usize {
+        1 + self
+            .text
+            .bytes()
+            .take(offset)
+            .filter(|&b| b == b'\n')
+            .count()
+    }
+
+    /// The key with the smallest span that holds the byte.
+    fn key_at(&self, offset: usize) -> String {
+        let holds = self.places.iter().filter(|(_, r)| r.contains(&offset));
+        // of equal spans the last is the deepest
+        let key = holds
+            .rev()
+            .min_by_key(|(_, r)| r.len())
+            .map(|(k, _)| k.clone());
+        key.unwrap_or_default()
+    }
+
+    fn fail(&self, offset: Option<usize>, message: &str) -> RecipeError {
+        let at = offset.map(|o| self.key_at(o)).unwrap_or_default();
+        RecipeError {
+            file: self.file.clone(),
+            line: offset.map(|o| self.line_at(o)),
+            at,
+            why: explain(message),
+        }
+    }
+
+    fn read_toml<T: DeserializeOwned>(&mut self) -> Result<T, RecipeError> {
+        let text = self.text.clone();
+        let table =
+            DeTable::parse(&text).map_err(|e| self.fail(e.span().map(|s| s.start), e.message()))?;
+        self.index_table("", table.get_ref(), 0);
+        toml::from_str(&text).map_err(|e| self.fail(e.span().map(|s| s.start), e.message()))
+    }
+
+    fn index_table(&mut self, above: &str, table: &DeTable<'_>, depth: usize) {
+        for (name, value) in table {
+            let name_span = name.span();
+            let key = join(above, name.get_ref());
+            self.places.push((key.clone(), name_span));
+            self.index_value(key, value.span(), value.get_ref(), depth);
+        }
+    }
+
+    fn index_value(&mut self, key: String, span: Range<usize>, value: &DeValue<'_>, depth: usize) {
+        self.places.push((key.clone(), span));
+        if depth > DEEPEST {
+            return;
+        }
+        match value {
+            DeValue::Table(t) => self.index_table(&key, t, depth + 1),
+            DeValue::Array(a) => {
+                for (i, v) in a.iter().enumerate() {
+                    self.index_value(format!("{key}[{i}]"), v.span(), v.get_ref(), depth + 1);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn read_json<T: DeserializeOwned>(&mut self) -> Result<T, RecipeError> {
+        let text = self.text.clone();
+        self.places = super::json::places(&text);
+        serde_json::from_str(&text).map_err(|e| {
+            let message = e.to_string();
+            let message = message.split(" at line ").next().unwrap_or_default();
+            let start = text.split_inclusive('\n').take(e.line().saturating_sub(1));
+            let offset = start.map(str::len).sum::<usize>() + e.column();
+            // the column is that of the last byte read, counted from 1, often just past a value
+            let mut fault = self.fail(Some(offset.saturating_sub(2)), message);
+            fault.line = Some(e.line());
+            fault
+        })
+    }
+}
+
+/// `above.name`, with the name in quotes where it is not a bare key.
+pub(super) fn join(above: &str, name: &str) -> String {
+    let bare = name
+        .chars()
+        .all(|c| c.is_alphanumeric() || c == '_' || c == '-');
+    let name = if bare {
+        name.to_owned()
+    } else {
+        format!("{name:?}")
+    };
+    if above.is_empty() {
+        name
+    } else {
+        format!("{above}.{name}")
+    }
+}
+
+/// A parser's message in one line, with the name that was probably meant.
+pub(super) fn explain(message: &str) -> String {
+    let message = message.trim().replace('\n', ", ");
+    let mut ticks = message.split('`').skip(1).step_by(2);
+    let unknown = message.starts_with("unknown field") || message.starts_with("unknown variant");
+    match ticks.next() {
+        Some(word) if unknown => {
+            let known: Vec<&str> = ticks.collect();
+            let hint = did_you_mean(word, known.iter().copied());
+            let what = if message.starts_with("unknown field") {
+                "key"
+            } else {
+                "value"
+            };
+            if known.is_empty() {
+                format!("unknown {what} `{word}`")
+            } else if hint.is_empty() {
+                format!("unknown {what} `{word}`; known: {}", known.join(", "))
+            } else {
+                format!("unknown {what} `{word}`{hint}")
+            }
+        }
+        _ => message.replace("missing field", "missing key"),
+    }
+}
