@@ -243,7 +243,7 @@ impl Grid {
                     samples[n] = f as f32;
                 }
                 let n = finished.fetch_add(1, Ordering::Relaxed) + 1;
-                if n % 64 == 0 {
+                if n.is_multiple_of(64) {
                     job.done(n as f64 / leaves.len() as f64);
                 }
                 Ok(())
