@@ -42,7 +42,11 @@ impl Planes {
             std::array::from_fn(|n| {
                 let room = ULPS * ulp(p[n].abs().max(p[n + 1].abs())) / (p[n + 1] - p[n]);
                 // a lattice that reaches infinity has NaN here
-                if room > MARGIN { room.min(0.25) } else { MARGIN }
+                if room > MARGIN {
+                    room.min(0.25)
+                } else {
+                    MARGIN
+                }
             })
         });
         Self { at, margin }
@@ -122,6 +126,17 @@ impl Cell<'_> {
             y[1] - y[0],
         );
         (mix(y[0], y[1], p.z), slope)
+    }
+
+    /// The position of a corner, mm.
+    pub(super) fn corner(&self, n: u8) -> DVec3 {
+        self.position(corner(n))
+    }
+
+    /// The inverse of [`Cell::position`].
+    pub(super) fn share(&self, p: DVec3) -> DVec3 {
+        let [lo, hi] = [self.corner(0), self.corner(7)];
+        (p - lo) / (hi - lo)
     }
 
     /// In mm, rounded to f32.
