@@ -22,6 +22,7 @@ use crate::job::{Cancelled, Job, check};
 use crate::mesh::TriMesh;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Cosine of the angle between normals from which they show an edge: 30 degrees. A smaller angle
 /// makes ridges of legs a few voxels thick; a larger one rounds the edges of a hexagon.
@@ -30,6 +31,10 @@ const SHARP: f64 = 0.866;
 /// Half the length of the differences that give normals, in steps of the lattice: short beside a
 /// cell, so that few straddle an edge, and long beside the round-off of fields held in f32.
 const REACH: f64 = 0.02;
+
+/// How far from the surface an apex may come to lie, in steps, before the plane it misses is found:
+/// an edge whose cell holds a corner of which it sees two planes runs on beyond the corner.
+const STRAY: f64 = 0.02;
 
 /// The whole surface.
 pub(super) fn extract(
@@ -40,6 +45,7 @@ pub(super) fn extract(
     let surface = Surface::new(bricks, Apexes::All, job)?;
     let mut mesh = surface.blank();
     let mut normals = vec![Vec3::ZERO; mesh.points.len()];
+    let finished = AtomicUsize::new(0);
     let parts = surface.points_of(&mut mesh.points).into_iter();
     let parts: Vec<_> = parts.zip(surface.points_of(&mut normals)).collect();
     parts
@@ -48,10 +54,17 @@ pub(super) fn extract(
         .try_for_each(|(n, (points, normals))| {
             check(job)?;
             find_crossings(&surface, n, f, points, normals);
+            job.done(
+                finished.fetch_add(1, Ordering::Relaxed) as f64 / surface.indices.len() as f64,
+            );
+            job.done(
+                finished.fetch_add(1, Ordering::Relaxed) as f64 / surface.indices.len() as f64,
+            );
             Ok(())
         })?;
 
     let known = Known {
+        f,
         surface: &surface,
         points: &mesh.points,
         normals: &normals,
@@ -86,6 +99,8 @@ struct Crossing {
     /// Shares of the edge with different signs, and the values there.
     share: [f64; 2],
     value: [f64; 2],
+    /// The end that moved last.
+    moved: Option<usize>,
     margin: f64,
     /// Where the border closes the shape the field has no surface; the normal is the edge's.
     normal: Option<DVec3>,
@@ -102,8 +117,8 @@ impl Crossing {
         self.from + self.along * share
     }
 
-    /// Takes the value at the guess for an end; halves the other one (the Illinois rule), lest it
-    /// stay for ever.
+    /// Takes the value at the guess for an end. An end that stays twice counts half (the Illinois
+    /// rule), lest it stay for ever.
     fn narrow(&mut self, value: f64) {
         let (share, end) = (
             self.guess(),
@@ -111,7 +126,10 @@ impl Crossing {
         );
         self.share[end] = share;
         self.value[end] = value;
-        self.value[1 - end] *= 0.5;
+        if self.moved == Some(end) {
+            self.value[1 - end] *= 0.5;
+        }
+        self.moved = Some(end);
     }
 }
 
@@ -125,7 +143,7 @@ fn find_crossings(
 ) {
     let mut list = crossings(surface, n);
     let mut values = vec![0.0; list.len()];
-    for _ in 0..3 {
+    for _ in 0..4 {
         let at: Vec<DVec3> = list.iter().map(|c| c.position(c.guess())).collect();
         f.values(&at, &mut values);
         for (c, &v) in list.iter_mut().zip(&values) {
@@ -162,6 +180,7 @@ fn crossings(surface: &Surface, n: usize) -> Vec<Crossing> {
                 along: to - from,
                 share: [0.0, 1.0],
                 value,
+                moved: None,
                 margin: cell.margin()[usize::from(axis)],
                 normal: on_border.then_some(outwards),
             });
@@ -174,6 +193,7 @@ fn crossings(surface: &Surface, n: usize) -> Vec<Crossing> {
 
 /// Crossings and normals of the whole surface.
 struct Known<'a> {
+    f: &'a dyn Field,
     surface: &'a Surface<'a>,
     points: &'a [DVec3],
     normals: &'a [Vec3],
@@ -197,7 +217,7 @@ impl Known<'_> {
 
     fn apex(&self, cell: &Cell, edges: &[Edge], beside: &Beside, only: bool) -> DVec3 {
         let ids = edges.iter().map(|&e| beside.point(cell.at, e) as usize);
-        let (points, normals): (Vec<DVec3>, Vec<DVec3>) = ids
+        let (mut points, mut normals): (Vec<DVec3>, Vec<DVec3>) = ids
             .map(|id| (self.points[id], self.normals[id].as_dvec3()))
             .unzip();
         let mean = points.iter().sum::<DVec3>() / points.len() as f64;
@@ -205,13 +225,26 @@ impl Known<'_> {
             return cell.position(cell.share(mean));
         }
         let spread = |a: &DVec3| normals.iter().any(|b| a.dot(*b) < SHARP);
-        let to = if normals.iter().any(spread) {
-            qef::offset(mean, &points, &normals)
-        } else {
-            bulge(mean, &points, &normals)
-        };
-        let to = if to.is_finite() { mean + to } else { mean };
-        cell.position(cell.share(to).clamp(cell.margin(), 1.0 - cell.margin()))
+        if !normals.iter().any(spread) {
+            return within(cell, mean + bulge(mean, &points, &normals), mean);
+        }
+        for _ in 0..2 {
+            let to = meet(cell, mean, &points, &normals);
+            let (value, normal) = self.plane(to);
+            if value.abs() < STRAY * self.surface.bricks.lattice.step {
+                break;
+            }
+            points.push(to - normal * value);
+            normals.push(normal);
+        }
+        within(cell, meet(cell, mean, &points, &normals), mean)
+    }
+
+    /// The field's value and direction of growth at a point.
+    fn plane(&self, p: DVec3) -> (f64, DVec3) {
+        let reach = REACH * self.surface.bricks.lattice.step;
+        let normal = gradients(self.f, &[p], reach).pop().unwrap_or_default();
+        (self.f.value(p), normal)
     }
 
     /// Writes the faces of one brick.
@@ -281,6 +314,26 @@ fn ambiguous(config: u8, axis: u8, high: u8) -> bool {
     let base = high << axis;
     let inside = [base, base | u, base | u | v, base | v].map(|c| config >> c & 1);
     inside[0] == inside[2] && inside[1] == inside[3] && inside[0] != inside[1]
+}
+
+/// Where planes meet in a cell: by turns the nearest point of their meeting and the nearest point of
+/// the cell, since an edge may pass the cell's middle outside and cut a corner of the cell off.
+fn meet(cell: &Cell, mean: DVec3, points: &[DVec3], normals: &[DVec3]) -> DVec3 {
+    let mut at = mean;
+    for _ in 0..8 {
+        let to = at + qef::offset(at, points, normals);
+        at = within(cell, to, mean);
+        if at.abs_diff_eq(to, cell.margin().x * (cell.corner(7) - cell.corner(0)).x) {
+            break;
+        }
+    }
+    at
+}
+
+/// The point of a cell that is nearest to `p`, rounded.
+fn within(cell: &Cell, p: DVec3, mean: DVec3) -> DVec3 {
+    let p = if p.is_finite() { p } else { mean };
+    cell.position(cell.share(p).clamp(cell.margin(), 1.0 - cell.margin()))
 }
 
 /// How far a smooth patch stands out over the mean of its crossings: half way to where their
