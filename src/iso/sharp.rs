@@ -57,9 +57,6 @@ pub(super) fn extract(
             job.done(
                 finished.fetch_add(1, Ordering::Relaxed) as f64 / surface.indices.len() as f64,
             );
-            job.done(
-                finished.fetch_add(1, Ordering::Relaxed) as f64 / surface.indices.len() as f64,
-            );
             Ok(())
         })?;
 
