@@ -6,12 +6,13 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Texels along the longer side of a depth map.
-const TEXELS: f32 = 320.0;
+/// Texels along the longer side of a depth map for each pixel of the picture, and the bounds.
+/// More, and the maps take longer than the picture; fewer, and rods cast no shadow.
+const TEXELS: f32 = 0.4;
+const FEWEST: f32 = 96.0;
+const MOST: f32 = 384.0;
 /// Share by which a triangle is taken larger, so that rounding leaves no gap between two.
 const SLACK: f32 = 1e-4;
-/// Meshes of more faces than this cast the shadow of a coarser one: below it nothing is gained.
-const FINE: usize = 100_000;
 /// How far a point is lifted off its surface before it is looked up, in texels. Less, and slanted
 /// surfaces shade themselves in stripes; more, and light leaks into corners.
 const LIFT: f32 = 1.3;
@@ -29,20 +30,26 @@ pub(super) struct Caster<'a> {
     points: Cow<'a, [Vec3]>,
     faces: Cow<'a, [[u32; 3]]>,
     corners: [Vec3; 8],
+    /// Texels along the longer side of its depth maps.
+    texels: f32,
 }
 
 impl<'a> Caster<'a> {
-    pub fn of(scene: &'a Scene) -> Self {
+    /// For a picture with that many pixels along its longer side.
+    pub fn of(scene: &'a Scene, pixels: u32) -> Self {
         let corners = scene.corners();
-        if scene.faces.len() < FINE {
+        let texels = (pixels as f32 * TEXELS).clamp(FEWEST, MOST).round();
+        // With fewer faces than a map has texels a coarser copy saves nothing.
+        if (scene.faces.len() as f32) < texels * texels {
             let (points, faces) = (Cow::from(&scene.points), Cow::from(&scene.faces));
             return Self {
                 points,
                 faces,
                 corners,
+                texels,
             };
         }
-        let scale = TEXELS / (scene.max - scene.min).max_element();
+        let scale = texels / (scene.max - scene.min).max_element();
         let cell = |v: u32| {
             // Unused points may lie anywhere; the casts saturate.
             let [x, y, z] = ((scene.points[v as usize] - scene.min) * scale).to_array();
@@ -68,6 +75,7 @@ impl<'a> Caster<'a> {
             points: Cow::from(points),
             faces: Cow::from(faces),
             corners,
+            texels,
         }
     }
 }
@@ -91,7 +99,7 @@ impl DepthMap {
         let corners = caster.corners.map(flat);
         let low = corners.into_iter().fold(Vec2::INFINITY, Vec2::min);
         let size = corners.into_iter().fold(Vec2::NEG_INFINITY, Vec2::max) - low;
-        let scale = TEXELS / size.max_element().max(1e-6);
+        let scale = caster.texels / size.max_element().max(1e-6);
         // A free texel all round, so that lookups need no care at the border.
         let [width, height] = (size * scale).to_array().map(|n| n as usize + 3);
         let low = low - 1.0 / scale;

@@ -29,8 +29,9 @@ pub(super) struct Lights {
 }
 
 impl Lights {
-    pub fn new(scene: &Scene, camera: &Camera) -> Self {
-        let caster = Caster::of(scene);
+    /// For a picture with that many pixels along its longer side.
+    pub fn new(scene: &Scene, camera: &Camera, pixels: u32) -> Self {
+        let caster = Caster::of(scene, pixels);
         let light = |(toward, color)| Light {
             toward,
             color,

@@ -99,7 +99,7 @@ pub fn render(mesh: &TriMesh, style: &Style) -> Result<Image, PictureError> {
         return Ok(image);
     };
     let camera = Camera::new(style.view, [width, height], &scene);
-    let lights = light::Lights::new(&scene, &camera);
+    let lights = light::Lights::new(&scene, &camera, width.max(height));
     shade::draw(&mut image, &scene, &camera, &lights, style);
     Ok(image)
 }

@@ -72,7 +72,7 @@ pub(super) fn draw(
     let (width, height) = (image.width() as usize, image.height() as usize);
     let samples = (width * SAMPLES, height * SAMPLES);
     let raster = Raster::new(scene, camera, SAMPLES as f32, samples.1, ROWS * SAMPLES);
-    let ground = Ground::new(scene, lights);
+    let ground = Ground::new(scene, lights, width.max(height));
     let painter = Painter {
         scene,
         camera,

@@ -308,7 +308,7 @@ fn sheets() {
         let image = sheet(&cells, &layout).unwrap();
         let reds = image.pixels().iter().filter(|p| **p == [200, 0, 0]).count();
         assert_eq!(reds, 2 * 40 * 30, "both pictures whole");
-        assert!(image.pixels().iter().any(|p| *p == layout.ink), "some text");
+        assert!(image.pixels().contains(&layout.ink), "some text");
     }
     assert!(matches!(
         sheet(&[], &Layout::default()),
