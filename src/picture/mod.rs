@@ -9,6 +9,8 @@
 //! mesh hides from them is dark: recesses, undersides, and the ground where the feet stand.
 
 mod camera;
+mod depth_map;
+mod font;
 mod ground;
 mod image;
 mod light;
@@ -16,9 +18,11 @@ mod normals;
 mod raster;
 mod scene;
 mod shade;
+mod sheet;
 
 pub use camera::View;
 pub use image::{Image, save_png};
+pub use sheet::{Cell, Layout, sheet};
 
 use crate::mesh::TriMesh;
 use crate::num::Aabb;
@@ -95,7 +99,7 @@ pub fn render(mesh: &TriMesh, style: &Style) -> Result<Image, PictureError> {
         return Ok(image);
     };
     let camera = Camera::new(style.view, [width, height], &scene);
-    let lights = light::Lights::new(&scene, &camera);
+    let lights = light::Lights::new(&scene, &camera, width.max(height));
     shade::draw(&mut image, &scene, &camera, &lights, style);
     Ok(image)
 }
