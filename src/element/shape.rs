@@ -149,6 +149,11 @@ impl Shape {
         }
         // a body thinner than its rounding keeps a trace of a core
         let round = round.min(half.min_element() * (1.0 - 1e-9));
+        if let Self::Prism(corners) = self {
+            // the outline stays, slanted sides too; only the rims round it are softened
+            let d = polygon(corners, half.truncate(), v.truncate());
+            return joined(&[d + round, v.z.abs() - half.z + round]) - round;
+        }
         self.distance(half - round, v) - round
     }
 

@@ -181,6 +181,21 @@ fn distances_known_by_hand() {
 }
 
 #[test]
+fn a_rounded_prism_keeps_its_slanted_sides() {
+    let kite = [DVec2::NEG_Y, DVec2::X, DVec2::Y, DVec2::NEG_X];
+    let prism = Element {
+        shape: Shape::prism(&kite).unwrap(),
+        ..Element::block(DVec3::ZERO, DVec3::splat(20.0), DQuat::IDENTITY).unwrap()
+    };
+    let side = DVec3::new(10.0, 10.0, 3.0);
+    assert!(prism.distance_rounded(side, 6.0).abs() < 1e-12);
+    // the rim's centre of curvature lies 6 inside the side and 6 below the top
+    let out = DVec3::new(1.0, 1.0, 0.0).normalize();
+    let rim = side - 6.0 * out + DVec3::Z * 11.0 + (out + DVec3::Z) * 10.0;
+    assert!((prism.distance_rounded(rim, 6.0) - (200f64.sqrt() - 6.0)).abs() < 1e-12);
+}
+
+#[test]
 fn bad_elements_are_refused() {
     let size = Element::block(DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0), DQuat::IDENTITY);
     assert!(matches!(size, Err(ElementError::Size { axis: 'y', .. })));

@@ -176,7 +176,20 @@ impl Assembly {
 
     fn fold(&self, parts: &[u32], p: DVec3) -> f64 {
         parts.iter().fold(f64::INFINITY, |f, &i| {
-            self.joins[i as usize].value(f, self.gauges[i as usize].distance(p))
+            let (gauge, join) = (&self.gauges[i as usize], self.joins[i as usize]);
+            // no distance is less than that to its box, which is cheap
+            let least = gauge.bounds().distance(p) - SLACK;
+            let idle = match join {
+                Join::Add => least >= f,
+                Join::Blend(k) => least >= f + k,
+                Join::Cut => -least <= f,
+                Join::Meet => false,
+            };
+            if idle {
+                f
+            } else {
+                join.value(f, gauge.distance(p))
+            }
         })
     }
 }
