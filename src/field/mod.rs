@@ -3,6 +3,8 @@
 //! The sign is told once: **f < 0 inside, f > 0 outside, f = 0 on the surface**; a signed
 //! distance field measures in millimetres.
 
+pub mod sampled;
+
 use crate::num::{Aabb, Interval};
 use glam::DVec3;
 use std::sync::Arc;

@@ -5,7 +5,13 @@
 //! fields by inverse-square weights; `graft` (two shapes) and `group` (any number) blend maps by
 //! default. [`build`] checks the plan; [`Morph::at`] fixes the time and measures what is automatic.
 
+mod convex;
+mod hybrid;
+mod inner;
+mod measure;
+mod metamorphosis;
 mod plan;
+mod space_time;
 
 pub use plan::{Blend, Course, Feature, Form, Frames, Inner, MorphError, Part, Plan, SpaceTime};
 
@@ -26,6 +32,5 @@ pub trait Morph: Send + Sync {
 /// # Errors
 /// A [`MorphError`] that names the feature or parameter at fault.
 pub fn build(plan: Plan) -> Result<Box<dyn Morph>, MorphError> {
-    let _ = plan;
-    todo!()
+    Ok(Box::new(metamorphosis::Metamorphosis::new(plan)?))
 }

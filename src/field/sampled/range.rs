@@ -1,0 +1,194 @@
+//! Exact ranges: least, greatest and steepest value of every leaf, and of blocks of them.
+
+use super::{CELLS, LEAF, Leaf, SIDE, Sampled};
+use crate::num::{Aabb, Interval};
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+
+/// Range and slope of a leaf or of a block of leaves.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    lo: f32,
+    hi: f32,
+    /// Largest change of the trilinear value a mm.
+    slope: f32,
+}
+
+impl Span {
+    const NONE: Self = Self {
+        lo: f32::INFINITY,
+        hi: f32::NEG_INFINITY,
+        slope: 0.0,
+    };
+
+    fn hull(self, o: Self) -> Self {
+        Self {
+            lo: self.lo.min(o.lo),
+            hi: self.hi.max(o.hi),
+            slope: self.slope.max(o.slope),
+        }
+    }
+}
+
+/// One span a leaf, and a pyramid over the table in which each level halves the resolution.
+#[derive(Default)]
+pub(super) struct Ranges {
+    leaves: Vec<Span>,
+    levels: Vec<(IVec3, Vec<Span>)>,
+}
+
+impl Ranges {
+    pub(super) fn new(s: &Sampled) -> Self {
+        let leaves: Vec<Span> = (0..s.leaves.len())
+            .into_par_iter()
+            .map(|l| span(&s.data[l * LEAF..(l + 1) * LEAF], s.step, s.leaves[l].level))
+            .collect();
+        let mut size = s.table_size;
+        let mut spans: Vec<Span> = s.table.iter().map(|&l| leaves[l as usize]).collect();
+        let mut levels = Vec::new();
+        while size.max_element() > 1 {
+            let half = (size + 1) / 2;
+            let mut up = vec![Span::NONE; (half.x * half.y * half.z) as usize];
+            for z in 0..size.z {
+                for y in 0..size.y {
+                    for x in 0..size.x {
+                        let from = spans[((z * size.y + y) * size.x + x) as usize];
+                        let to = ((z / 2 * half.y + y / 2) * half.x + x / 2) as usize;
+                        up[to] = up[to].hull(from);
+                    }
+                }
+            }
+            levels.push((half, up.clone()));
+            (size, spans) = (half, up);
+        }
+        Self { leaves, levels }
+    }
+
+    pub(super) fn leaf(&self, l: usize) -> Interval {
+        Interval::new(f64::from(self.leaves[l].lo), f64::from(self.leaves[l].hi))
+    }
+}
+
+fn span(s: &[f32], step: f64, level: u32) -> Span {
+    let (mut lo, mut hi) = (f32::INFINITY, f32::NEG_INFINITY);
+    let mut rise = [0f32; 3];
+    for k in 0..SIDE {
+        for j in 0..SIDE {
+            for i in 0..SIDE {
+                let n = i + SIDE * (j + SIDE * k);
+                let v = s[n];
+                (lo, hi) = (lo.min(v), hi.max(v));
+                if i + 1 < SIDE {
+                    rise[0] = rise[0].max((s[n + 1] - v).abs());
+                }
+                if j + 1 < SIDE {
+                    rise[1] = rise[1].max((s[n + SIDE] - v).abs());
+                }
+                if k + 1 < SIDE {
+                    rise[2] = rise[2].max((s[n + SIDE * SIDE] - v).abs());
+                }
+            }
+        }
+    }
+    let h = step * f64::from(1u32 << level);
+    let slope = DVec3::from(rise.map(f64::from)).length() / h;
+    Span {
+        lo,
+        hi,
+        slope: (slope * 1.000_001) as f32,
+    }
+}
+
+impl Sampled {
+    /// Range of the trilinear values on a box inside the sampled box, and their slope.
+    pub(super) fn range(&self, b: &Aabb) -> (Interval, f64) {
+        let low = ((b.min - self.origin) * self.inverse).max(DVec3::ZERO);
+        let high = ((b.max - self.origin) * self.inverse).max(DVec3::ZERO);
+        let cells = self.table_size * CELLS - 1;
+        let (first, last) = (low.as_ivec3().min(cells), high.as_ivec3().min(cells));
+        let (b0, b1) = (first / CELLS, last / CELLS);
+        let span = if (b1 - b0).max_element() <= 1 {
+            self.touched(b0, b1, low, high)
+        } else {
+            self.blocks(b0, b1)
+        };
+        (
+            Interval::new(f64::from(span.lo), f64::from(span.hi)),
+            f64::from(span.slope),
+        )
+    }
+
+    /// The samples of the cells that the box touches, in the few leaves it lies in.
+    fn touched(&self, b0: IVec3, b1: IVec3, low: DVec3, high: DVec3) -> Span {
+        let mut span = Span::NONE;
+        let mut seen = [u32::MAX; 8];
+        let mut count = 0;
+        for z in b0.z..=b1.z {
+            for y in b0.y..=b1.y {
+                for x in b0.x..=b1.x {
+                    let t = (z * self.table_size.y + y) * self.table_size.x + x;
+                    let leaf = self.table[t as usize];
+                    if !seen[..count].contains(&leaf) {
+                        seen[count] = leaf;
+                        count += 1;
+                        span = span.hull(self.touched_in(leaf as usize, low, high));
+                    }
+                }
+            }
+        }
+        span
+    }
+
+    fn touched_in(&self, leaf: usize, low: DVec3, high: DVec3) -> Span {
+        let Leaf { corner, level } = self.leaves[leaf];
+        let scale = 1.0 / f64::from(1u32 << level);
+        let top = DVec3::splat(f64::from(CELLS));
+        let a = ((low - corner.as_dvec3()) * scale)
+            .clamp(DVec3::ZERO, top)
+            .floor()
+            .as_ivec3();
+        let b = ((high - corner.as_dvec3()) * scale)
+            .clamp(DVec3::ZERO, top)
+            .ceil()
+            .as_ivec3();
+        let whole = self.ranges.leaves[leaf];
+        if a == IVec3::ZERO && b == IVec3::splat(CELLS) {
+            return whole;
+        }
+        let (mut lo, mut hi) = (f32::INFINITY, f32::NEG_INFINITY);
+        for k in a.z..=b.z {
+            for j in a.y..=b.y {
+                let row = leaf * LEAF + SIDE * (j as usize + SIDE * k as usize);
+                for &v in &self.data[row + a.x as usize..=row + b.x as usize] {
+                    (lo, hi) = (lo.min(v), hi.max(v));
+                }
+            }
+        }
+        Span {
+            lo,
+            hi,
+            slope: whole.slope,
+        }
+    }
+
+    /// Whole blocks of the pyramid, at the level where few of them cover the box.
+    fn blocks(&self, b0: IVec3, b1: IVec3) -> Span {
+        let mut level = 0;
+        while level + 1 < self.ranges.levels.len()
+            && ((b1 >> (level as i32 + 1)) - (b0 >> (level as i32 + 1))).max_element() > 2
+        {
+            level += 1;
+        }
+        let (size, spans) = &self.ranges.levels[level];
+        let (a, b) = (b0 >> (level as i32 + 1), b1 >> (level as i32 + 1));
+        let mut span = Span::NONE;
+        for z in a.z..=b.z {
+            for y in a.y..=b.y {
+                for x in a.x..=b.x {
+                    span = span.hull(spans[((z * size.y + y) * size.x + x) as usize]);
+                }
+            }
+        }
+        span
+    }
+}

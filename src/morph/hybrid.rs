@@ -1,0 +1,357 @@
+//! The field of a hybrid at one time: positions through the features, values of the shapes there,
+//! and the morphing function of those.
+
+use super::convex::combine;
+use super::inner::{Local, LocalRange, Mix};
+use super::plan::Blend;
+use crate::element::{Between, Element};
+use crate::field::{Field, Shared};
+use crate::num::{Aabb, Interval};
+use crate::weight::Weighting;
+use glam::DVec3;
+
+/// A feature at one time.
+pub(super) struct Placed {
+    /// The element of the result, E' (paper 001, Algorithm 1).
+    pub element: Element,
+    /// From it onto the element of each shape: M_j M'^-1.
+    pub maps: Vec<Between>,
+    /// Weights of the shapes in this feature; sum to one.
+    pub lam: Vec<f64>,
+    /// Offset d of eq. 6, mm.
+    pub offset: f64,
+    /// Automatic parameters.
+    pub local: Local,
+}
+
+/// A hybrid at one time. Without features the shapes are looked up where they stand.
+pub(super) struct Hybrid {
+    pub shapes: Vec<Shared>,
+    pub features: Vec<Placed>,
+    /// Weights and parameters without features.
+    pub lam: Vec<f64>,
+    pub local: Local,
+    pub blend: Blend,
+    pub mix: Mix,
+    pub weighting: Weighting,
+    pub sharp: Weighting,
+}
+
+/// Values at many points of what the morphing function takes, a row a point.
+#[derive(Default)]
+pub(super) struct Looked {
+    /// Values of the k shapes at each point.
+    pub g: Vec<f64>,
+    /// Weights of the k shapes at each point.
+    pub lam: Vec<f64>,
+    /// Feature weights at each point, n a row: those of positions, and the sharp ones.
+    w: Vec<f64>,
+    sharp: Vec<f64>,
+    /// Distances to the features, n a row.
+    d: Vec<f64>,
+}
+
+impl Hybrid {
+    fn counts(&self) -> (usize, usize) {
+        (self.shapes.len(), self.features.len())
+    }
+
+    /// Distances and weights of the features at every point.
+    fn weigh(&self, at: &[DVec3], sharp: bool, out: &mut Looked) {
+        let n = self.features.len();
+        out.d.resize(at.len() * n, 0.0);
+        out.w.resize(at.len() * n, 0.0);
+        out.sharp.resize(at.len() * n, 0.0);
+        for (r, &p) in at.iter().enumerate() {
+            let row = r * n..(r + 1) * n;
+            for (d, f) in out.d[row.clone()].iter_mut().zip(&self.features) {
+                *d = f.element.distance(p);
+            }
+            self.weighting
+                .weigh(&out.d[row.clone()], &mut out.w[row.clone()]);
+            if sharp {
+                self.sharp.weigh(&out.d[row.clone()], &mut out.sharp[row]);
+            }
+        }
+    }
+
+    /// Values and weights of the shapes under the blended maps: y_j = Σ w_i T_ij(x), g_j = f_j(y_j).
+    pub fn look_up(&self, at: &[DVec3], out: &mut Looked) {
+        let (k, n) = self.counts();
+        out.g.resize(at.len() * k, 0.0);
+        out.lam.resize(at.len() * k, 0.0);
+        if n > 0 {
+            self.weigh(at, true, out);
+        }
+        let mut y = vec![DVec3::ZERO; at.len()];
+        let mut g = vec![0.0; at.len()];
+        for (r, row) in out.lam.chunks_exact_mut(k).enumerate() {
+            if n == 0 {
+                row.copy_from_slice(&self.lam);
+            } else {
+                let w = &out.sharp[r * n..(r + 1) * n];
+                for (j, l) in row.iter_mut().enumerate() {
+                    *l = w
+                        .iter()
+                        .zip(&self.features)
+                        .map(|(w, f)| w * f.lam[j])
+                        .sum();
+                }
+            }
+        }
+        for (j, shape) in self.shapes.iter().enumerate() {
+            for (r, (y, &p)) in y.iter_mut().zip(at).enumerate() {
+                *y = if n == 0 {
+                    p
+                } else {
+                    self.blended(j, p, &out.w[r * n..(r + 1) * n])
+                };
+            }
+            shape.values(&y, &mut g);
+            for (r, &g) in g.iter().enumerate() {
+                out.g[r * k + j] = g;
+            }
+        }
+    }
+
+    fn blended(&self, j: usize, p: DVec3, w: &[f64]) -> DVec3 {
+        let mut y = DVec3::ZERO;
+        for (w, f) in w.iter().zip(&self.features) {
+            // exact zeros (eq. 5) would only cost time
+            if *w > 0.0 {
+                y += *w * f.maps[j].pull(p);
+            }
+        }
+        y
+    }
+
+    /// The morphing parameters at a row of sharp weights.
+    fn local(&self, w: &[f64]) -> Local {
+        if self.features.is_empty() {
+            return self.local;
+        }
+        let sum = |get: fn(&Local) -> f64| -> f64 {
+            w.iter()
+                .zip(&self.features)
+                .map(|(w, f)| w * get(&f.local))
+                .sum()
+        };
+        Local {
+            reach: sum(|l| l.reach),
+            depth: sum(|l| l.depth),
+            apart: sum(|l| l.apart),
+            level: sum(|l| l.level),
+        }
+    }
+
+    fn values_by_maps(&self, at: &[DVec3], out: &mut [f64]) {
+        let (k, n) = self.counts();
+        let mut l = Looked::default();
+        self.look_up(at, &mut l);
+        for (r, f) in out.iter_mut().enumerate() {
+            let row = r * k..(r + 1) * k;
+            let feature = r * n..(r + 1) * n;
+            let (w, d) = if n > 0 {
+                (&l.sharp[feature.clone()], &l.d[feature.clone()])
+            } else {
+                (&[][..], &[][..])
+            };
+            *f = self
+                .mix
+                .value(&l.g[row.clone()], &l.lam[row], &self.local(w));
+            for (i, p) in self.features.iter().enumerate() {
+                *f -= l.w[r * n + i] * offset(p.offset, d[i]);
+            }
+        }
+    }
+
+    /// Eqs 1 and 8: Σ w_i (f_m(f_j(T_ij x)) - o_i), the offset's sign being the house's.
+    fn values_by_fields(&self, at: &[DVec3], out: &mut [f64]) {
+        let (k, n) = self.counts();
+        let mut l = Looked::default();
+        self.weigh(at, false, &mut l);
+        out.fill(0.0);
+        let mut y = vec![DVec3::ZERO; at.len()];
+        let mut one = vec![0.0; at.len()];
+        let mut g = vec![0.0; at.len() * k];
+        for (i, feature) in self.features.iter().enumerate() {
+            for (j, shape) in self.shapes.iter().enumerate() {
+                for (y, &p) in y.iter_mut().zip(at) {
+                    *y = feature.maps[j].pull(p);
+                }
+                shape.values(&y, &mut one);
+                for (r, &v) in one.iter().enumerate() {
+                    g[r * k + j] = v;
+                }
+            }
+            for (r, f) in out.iter_mut().enumerate() {
+                let w = l.w[r * n + i];
+                if w > 0.0 {
+                    let v = self
+                        .mix
+                        .value(&g[r * k..(r + 1) * k], &feature.lam, &feature.local);
+                    *f += w * (v - offset(feature.offset, l.d[r * n + i]));
+                }
+            }
+        }
+    }
+
+    fn bound_by_maps(&self, b: &Aabb) -> Interval {
+        let (k, n) = self.counts();
+        let mut order = Vec::new();
+        if n == 0 {
+            let g: Vec<_> = self.shapes.iter().map(|f| f.bound(b)).collect();
+            let lam: Vec<_> = self.lam.iter().map(|&l| Interval::point(l)).collect();
+            return self.mix.bound(&g, &lam, &self.local.into(), &mut order);
+        }
+        let d: Vec<_> = self
+            .features
+            .iter()
+            .map(|f| f.element.distance_bound(b))
+            .collect();
+        let (mut w, mut sharp) = (vec![Interval::ALL; n], vec![Interval::ALL; n]);
+        self.weighting.enclose(&d, &mut w);
+        self.sharp.enclose(&d, &mut sharp);
+        let convex = |x: &dyn Fn(&Placed) -> f64, order: &mut Vec<usize>| {
+            let x: Vec<_> = self
+                .features
+                .iter()
+                .map(|f| Interval::point(x(f)))
+                .collect();
+            combine(&sharp, &x, order)
+        };
+        let mut g = Vec::with_capacity(k);
+        let mut lam = Vec::with_capacity(k);
+        for j in 0..k {
+            g.push(self.shapes[j].bound(&self.image(j, b, &w, &mut order)));
+            lam.push(convex(&|f| f.lam[j], &mut order).clamp(0.0, 1.0));
+        }
+        let local = LocalRange {
+            reach: convex(&|f| f.local.reach, &mut order),
+            depth: convex(&|f| f.local.depth, &mut order),
+            apart: convex(&|f| f.local.apart, &mut order),
+            level: convex(&|f| f.local.level, &mut order),
+        };
+        let offsets: Vec<_> = self
+            .features
+            .iter()
+            .zip(&d)
+            .map(|(f, &d)| offset_range(f.offset, d))
+            .collect();
+        self.mix.bound(&g, &lam, &local, &mut order) - combine(&w, &offsets, &mut order)
+    }
+
+    /// A box that holds y_j(x) for every x in `b`: the image under the map of the feature that
+    /// weighs most, plus what the others may pull away from it.
+    fn image(&self, j: usize, b: &Aabb, w: &[Interval], order: &mut Vec<usize>) -> Aabb {
+        let main = (0..w.len())
+            .max_by(|&a, &c| w[a].hi.total_cmp(&w[c].hi))
+            .unwrap_or(0);
+        let own = self.features[main].maps[j].image(b);
+        let away: Vec<Aabb> = self
+            .features
+            .iter()
+            .map(|f| f.maps[j].difference(&self.features[main].maps[j], b))
+            .collect();
+        let axis = |c: usize, order: &mut Vec<usize>| {
+            let x: Vec<_> = away
+                .iter()
+                .enumerate()
+                .map(|(i, a)| {
+                    if i == main {
+                        Interval::point(0.0)
+                    } else {
+                        Interval::new(a.min[c], a.max[c])
+                    }
+                })
+                .collect();
+            combine(w, &x, order)
+        };
+        let shift = [axis(0, order), axis(1, order), axis(2, order)];
+        Aabb::new(
+            own.min + DVec3::new(shift[0].lo, shift[1].lo, shift[2].lo),
+            own.max + DVec3::new(shift[0].hi, shift[1].hi, shift[2].hi),
+        )
+    }
+
+    fn bound_by_fields(&self, b: &Aabb) -> Interval {
+        let mut order = Vec::new();
+        let d: Vec<_> = self
+            .features
+            .iter()
+            .map(|f| f.element.distance_bound(b))
+            .collect();
+        let mut w = vec![Interval::ALL; d.len()];
+        self.weighting.enclose(&d, &mut w);
+        let values: Vec<_> = self
+            .features
+            .iter()
+            .enumerate()
+            .map(|(i, f)| {
+                if w[i].hi <= 0.0 {
+                    return Interval::point(0.0);
+                }
+                let g: Vec<_> = self
+                    .shapes
+                    .iter()
+                    .zip(&f.maps)
+                    .map(|(s, m)| s.bound(&m.image(b)))
+                    .collect();
+                let lam: Vec<_> = f.lam.iter().map(|&l| Interval::point(l)).collect();
+                let v = self.mix.bound(&g, &lam, &f.local.into(), &mut order);
+                v - offset_range(f.offset, d[i])
+            })
+            .collect();
+        combine(&w, &values, &mut order)
+    }
+}
+
+/// Offset o_i of eq. 6 as METHODS corrects it: d inside the feature, fading to nothing at the
+/// distance |d| outside.
+fn offset(d: f64, distance: f64) -> f64 {
+    (d.abs() - distance).clamp(0.0, d.abs()).copysign(d)
+}
+
+fn offset_range(d: f64, distance: Interval) -> Interval {
+    let (a, b) = (offset(d, distance.lo), offset(d, distance.hi));
+    Interval::new(a.min(b), a.max(b))
+}
+
+impl From<Local> for LocalRange {
+    fn from(l: Local) -> Self {
+        Self {
+            reach: Interval::point(l.reach),
+            depth: Interval::point(l.depth),
+            apart: Interval::point(l.apart),
+            level: Interval::point(l.level),
+        }
+    }
+}
+
+impl Field for Hybrid {
+    fn value(&self, p: DVec3) -> f64 {
+        let mut f = [0.0];
+        self.values(&[p], &mut f);
+        f[0]
+    }
+
+    fn values(&self, at: &[DVec3], out: &mut [f64]) {
+        match self.blend {
+            Blend::Fields if !self.features.is_empty() => self.values_by_fields(at, out),
+            _ => self.values_by_maps(at, out),
+        }
+    }
+
+    fn bound(&self, b: &Aabb) -> Interval {
+        let f = match self.blend {
+            Blend::Fields if !self.features.is_empty() => self.bound_by_fields(b),
+            _ => self.bound_by_maps(b),
+        };
+        f.widen(1e-9 * (1.0 + b.radius()))
+    }
+
+    /// The maps may bring matter from anywhere, so nothing smaller can be promised.
+    fn support(&self) -> Aabb {
+        Aabb::ALL
+    }
+}

@@ -1,0 +1,184 @@
+//! Automatic parameters, measured on the shapes as they lie in the hybrid's frames (GRAFT.md,
+//! recipe E; METHODS B).
+
+use super::hybrid::{Hybrid, Looked};
+use super::inner::Local;
+use super::plan::SpaceTime;
+use super::space_time::{Bounded, height_for_volume};
+use crate::job::{self, Cancelled, Job};
+use crate::num::Aabb;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Samples along each side of a feature: 24³ see a leg of a tenth of the feature's width.
+const FEATURE_SIDE: usize = 24;
+/// Samples along the longest side of the whole shape: 64 see a leg of 15 mm on a chair of 900 mm.
+const WHOLE_SIDE: f64 = 64.0;
+/// Least reach, mm: a feature whose parts nearly agree still has to hold what stands beside it.
+const LEAST_REACH: f64 = 20.0;
+/// Factor on the measured reach, since the samples miss the very farthest point.
+const REACH_MARGIN: f64 = 1.1;
+/// Largest level of the linear form, mm: more fattens thin members instead of mending them.
+const LEVEL_CAP: f64 = 12.0;
+/// Largest height of the space-time blend in units of the reach: near t = 0 and 1 the blend is weak,
+/// and the height that would keep the volume grows without bound.
+const HEIGHT_CAP: f64 = 4.0;
+
+/// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes.
+fn local(g: &[f64], lam: &[f64]) -> Local {
+    let k = lam.len();
+    let present: Vec<usize> = (0..k).filter(|&j| lam[j] > 0.0).collect();
+    let (mut far, mut depth) = (0.0f64, 0.0f64);
+    let (mut both, mut either) = (0u64, 0u64);
+    let mut wanted = 0.0;
+    let mut means = Vec::with_capacity(g.len() / k);
+    for row in g.chunks_exact(k) {
+        let (mut inside, mut mean, mut most) = (0, 0.0, f64::NEG_INFINITY);
+        for &j in &present {
+            mean += lam[j] * row[j];
+            most = most.max(row[j]);
+            if row[j] < 0.0 {
+                inside += 1;
+                wanted += lam[j];
+                depth = depth.max(-row[j]);
+            }
+        }
+        if inside > 0 {
+            // what one shape holds lies this far from another
+            far = far.max(most);
+            either += 1;
+        }
+        both += u64::from(inside == present.len());
+        means.push(mean);
+    }
+    let overlap = if either > 0 {
+        both as f64 / either as f64
+    } else {
+        1.0
+    };
+    let level = if present.len() > 1 {
+        level(&mut means, wanted)
+    } else {
+        0.0
+    };
+    Local {
+        reach: (far * REACH_MARGIN).max(LEAST_REACH),
+        depth: (depth * REACH_MARGIN).max(1.0),
+        apart: ((0.5 - overlap) / 0.3).clamp(0.0, 1.0),
+        level,
+    }
+}
+
+/// The level below which `wanted` of the means lie, within the cap.
+fn level(means: &mut [f64], wanted: f64) -> f64 {
+    let rank = wanted.round() as usize;
+    if rank == 0 || rank > means.len() {
+        return 0.0;
+    }
+    let (_, level, _) = means.select_nth_unstable_by(rank - 1, f64::total_cmp);
+    level.clamp(0.0, LEVEL_CAP)
+}
+
+/// Measures the features of a hybrid, or the whole shapes over `domain` where it has none.
+pub(super) fn locals(h: &Hybrid, domain: &Aabb, job: &dyn Job) -> Result<Vec<Local>, Cancelled> {
+    if h.features.is_empty() {
+        let looked = look(h, &lattice(domain), job)?;
+        return Ok(vec![local(&looked.g, &h.lam)]);
+    }
+    h.features
+        .iter()
+        .map(|f| {
+            let at: Vec<DVec3> = cube(FEATURE_SIDE).map(|q| f.element.to_world(q)).collect();
+            Ok(local(&look(h, &at, job)?.g, &f.lam))
+        })
+        .collect()
+}
+
+/// Chooses what the user left open of the space-time blend.
+pub(super) fn bounded(
+    h: &Hybrid,
+    want: &SpaceTime,
+    domain: &Aabb,
+    job: &dyn Job,
+) -> Result<Bounded, Cancelled> {
+    let k = h.shapes.len();
+    let looked = look(h, &lattice(domain), job)?;
+    let reach = looked
+        .g
+        .chunks_exact(k)
+        .zip(looked.lam.chunks_exact(k))
+        .filter(|(g, l)| g.iter().zip(*l).any(|(g, l)| *l > 0.0 && *g < 0.0))
+        .map(|(g, l)| {
+            (0..k)
+                .filter(|&j| l[j] > 0.0)
+                .map(|j| g[j])
+                .fold(0.0, f64::max)
+        })
+        .fold(1.0, f64::max);
+    let mut b = Bounded {
+        form: want.form,
+        a0: 0.0,
+        a: want.a.clone().unwrap_or_else(|| vec![reach; k]),
+        a3: want.a3,
+        reach,
+    };
+    b.a0 = match want.a0 {
+        Some(a0) => a0,
+        None => {
+            let rows = looked.g.chunks_exact(k).zip(looked.lam.chunks_exact(k));
+            let wanted: f64 = rows
+                .clone()
+                .flat_map(|(g, l)| {
+                    g.iter()
+                        .zip(l)
+                        .map(|(g, l)| if *g < 0.0 { *l } else { 0.0 })
+                })
+                .sum();
+            let samples: Vec<_> = rows.map(|(g, l)| b.parts(g, l)).collect();
+            height_for_volume(&samples, wanted, HEIGHT_CAP * reach)
+        }
+    };
+    Ok(b)
+}
+
+/// Cell centres of a cube of `side`³ cells over [-1, 1]³.
+fn cube(side: usize) -> impl Iterator<Item = DVec3> {
+    let at = move |i: usize| (2.0 * i as f64 + 1.0) / side as f64 - 1.0;
+    (0..side * side * side)
+        .map(move |n| DVec3::new(at(n % side), at(n / side % side), at(n / (side * side))))
+}
+
+/// Cell centres of a lattice over the domain.
+fn lattice(domain: &Aabb) -> Vec<DVec3> {
+    let size = domain.size();
+    let step = size.max_element() / WHOLE_SIDE;
+    let n = (size / step).ceil().as_uvec3().max(glam::UVec3::ONE);
+    let mut at = Vec::with_capacity((n.x * n.y * n.z) as usize);
+    for k in 0..n.z {
+        for j in 0..n.y {
+            for i in 0..n.x {
+                at.push(domain.min + (glam::UVec3::new(i, j, k).as_dvec3() + 0.5) * step);
+            }
+        }
+    }
+    at
+}
+
+/// Looks a hybrid up at many points, in parallel, rows in the order of the points.
+fn look(h: &Hybrid, at: &[DVec3], job: &dyn Job) -> Result<Looked, Cancelled> {
+    let parts: Vec<Looked> = at
+        .par_chunks(512)
+        .map(|at| {
+            job::check(job)?;
+            let mut l = Looked::default();
+            h.look_up(at, &mut l);
+            Ok(l)
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    let mut all = Looked::default();
+    for p in parts {
+        all.g.extend(p.g);
+        all.lam.extend(p.lam);
+    }
+    Ok(all)
+}

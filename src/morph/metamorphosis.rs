@@ -1,0 +1,181 @@
+//! A checked plan, and its field at a time.
+
+use super::Morph;
+use super::hybrid::{Hybrid, Placed};
+use super::inner::{Local, Mix};
+use super::measure;
+use super::plan::{Course, Form, Frames, Inner, MorphError, Plan};
+use crate::element::{Element, average};
+use crate::field::Shared;
+use crate::job::{Cancelled, Job};
+use crate::num::Aabb;
+use std::sync::Arc;
+
+pub(super) struct Metamorphosis {
+    plan: Plan,
+}
+
+const UNMEASURED: Local = Local {
+    reach: 0.0,
+    depth: 0.0,
+    apart: 1.0,
+    level: 0.0,
+};
+
+impl Metamorphosis {
+    pub fn new(plan: Plan) -> Result<Self, MorphError> {
+        let k = plan.shapes.len();
+        if k < 2 {
+            return Err(MorphError::Shapes(k));
+        }
+        if plan.space_time.form == Form::HalfCylinders && k != 2 {
+            return Err(MorphError::PairOnly(k));
+        }
+        check_space_time(&plan)?;
+        check_course(&plan.course, k, "default")?;
+        for f in &plan.features {
+            if f.elements.len() != k {
+                let (feature, got) = (f.name.clone(), f.elements.len());
+                return Err(MorphError::Unpaired {
+                    feature,
+                    got,
+                    shapes: k,
+                });
+            }
+            check_course(&f.morph, k, &f.name)?;
+            check_course(&f.deform, k, &f.name)?;
+            positive(
+                f.offset.is_finite(),
+                "offset",
+                "a finite number of mm",
+                f.offset,
+            )?;
+        }
+        if let Frames::Of(j) = plan.frames {
+            positive(j < k, "frames", "the index of a shape", j as f64)?;
+        }
+        Ok(Self { plan })
+    }
+
+    fn place(&self, t: f64) -> Vec<Placed> {
+        self.plan
+            .features
+            .iter()
+            .map(|f| {
+                let weights = match self.plan.frames {
+                    Frames::Average => f.deform.at(t),
+                    Frames::Of(j) => (0..f.elements.len()).map(|i| f64::from(i == j)).collect(),
+                };
+                let rows: Vec<(&Element, f64)> = f.elements.iter().zip(weights).collect();
+                let element = average(&rows);
+                let maps = f.elements.iter().map(|e| element.between(e)).collect();
+                Placed {
+                    element,
+                    maps,
+                    lam: f.morph.at(t),
+                    offset: f.offset,
+                    local: UNMEASURED,
+                }
+            })
+            .collect()
+    }
+}
+
+impl Morph for Metamorphosis {
+    fn at(&self, t: f64, job: &dyn Job) -> Result<Shared, Cancelled> {
+        let plan = &self.plan;
+        let mut h = Hybrid {
+            shapes: plan.shapes.iter().map(|s| s.field.clone()).collect(),
+            features: self.place(t),
+            lam: plan.course.at(t),
+            local: UNMEASURED,
+            blend: plan.blend,
+            mix: match plan.inner {
+                Inner::Grow => Mix::Grow,
+                Inner::Erode => Mix::Erode,
+                Inner::Auto => Mix::Auto,
+                _ => Mix::Linear,
+            },
+            weighting: plan.weighting,
+            sharp: plan.sharp,
+        };
+        let domain = self.domain();
+        match plan.inner {
+            Inner::Linear => {}
+            Inner::SpaceTime => {
+                h.mix = Mix::SpaceTime(measure::bounded(&h, &plan.space_time, &domain, job)?);
+            }
+            Inner::Grow | Inner::Erode | Inner::Auto => {
+                let locals = measure::locals(&h, &domain, job)?;
+                if h.features.is_empty() {
+                    h.local = locals[0];
+                }
+                for (f, l) in h.features.iter_mut().zip(locals) {
+                    f.local = l;
+                }
+            }
+        }
+        Ok(Arc::new(h))
+    }
+
+    fn domain(&self) -> Aabb {
+        let shapes = self
+            .plan
+            .shapes
+            .iter()
+            .fold(Aabb::EMPTY, |b, s| b.hull(s.field.support()));
+        let offset = self
+            .plan
+            .features
+            .iter()
+            .fold(0.0, |o: f64, f| o.max(f.offset));
+        shapes.grow(offset)
+    }
+}
+
+fn check_course(course: &Course, k: usize, at: &str) -> Result<(), MorphError> {
+    let bad = match course {
+        Course::Pair(_) => k != 2,
+        Course::Fixed(w) => {
+            w.len() != k
+                || w.iter().any(|&x| !x.is_finite() || x < 0.0)
+                || w.iter().sum::<f64>() <= 0.0
+        }
+    };
+    if bad {
+        Err(MorphError::Weights {
+            at: at.to_owned(),
+            shapes: k,
+        })
+    } else {
+        Ok(())
+    }
+}
+
+fn check_space_time(plan: &Plan) -> Result<(), MorphError> {
+    let s = &plan.space_time;
+    let k = plan.shapes.len();
+    positive(s.a3.is_finite() && s.a3 > 0.0, "a3", "positive", s.a3)?;
+    if let Some(a0) = s.a0 {
+        positive(a0.is_finite() && a0 >= 0.0, "a0", "zero or more", a0)?;
+    }
+    for (j, &a) in s.a.iter().flatten().enumerate() {
+        positive(a.is_finite() && a > 0.0, &format!("a[{j}]"), "positive", a)?;
+    }
+    if let Some(a) = &s.a {
+        positive(a.len() == k, "a", "one number a shape", a.len() as f64)?;
+    }
+    Ok(())
+}
+
+fn positive(ok: bool, what: &str, expected: &'static str, got: f64) -> Result<(), MorphError> {
+    if ok {
+        Ok(())
+    } else {
+        Err(MorphError::Range {
+            what: what.to_owned(),
+            expected,
+            got,
+        })
+    }
+}
