@@ -22,11 +22,14 @@ pub use method::{
 };
 pub use near::{did_you_mean, nearest};
 pub use output::{GridEntry, MesherEntry, OutputEntry};
-pub use shapes::{LengthUnit, Place, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis};
+pub use shapes::{
+    LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,
+};
 pub use solid::{
     BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Mirror, Op, Part, Primitive, PrismShape,
     Solid, SolidKind,
 };
+pub(crate) use source::join;
 pub use source::{Problem, RecipeError, Source};
 pub use time::{TimeFn, Times};
 pub use value::{Auto, PlainOr};
@@ -102,7 +105,11 @@ impl Recipe {
             if name.is_empty() {
                 return Err(Problem::new("shapes", "a shape has an empty name"));
             }
-            shape.validate(&source::join("shapes", name))?;
+            let at = source::join("shapes", name);
+            shape.validate(&at)?;
+            if let PlainOr::Table(PlaceLike { like }) = &shape.place {
+                self.stands_alone(like, &format!("{at}.place.like"))?;
+            }
         }
         self.grid.validate()?;
         features::validate(&self.features, &self.shapes)?;
@@ -125,6 +132,26 @@ impl Recipe {
             hybrid.validate(&at, self)?;
         }
         self.output.validate()
+    }
+}
+
+impl Recipe {
+    /// Whether there is a shape of that name whose place depends on no other.
+    fn stands_alone(&self, name: &str, at: &str) -> Result<(), Problem> {
+        let Some(shape) = self.shapes.get(name) else {
+            let hint = did_you_mean(name, self.shapes.keys().map(String::as_str));
+            return Err(Problem::new(
+                at,
+                format!("no shape is called `{name}`{hint}"),
+            ));
+        };
+        match shape.place {
+            PlainOr::Plain(_) => Ok(()),
+            PlainOr::Table(_) => {
+                let why = format!("`{name}` stands like another shape itself; name that one");
+                Err(Problem::new(at, why))
+            }
+        }
     }
 }
 

@@ -198,7 +198,7 @@ impl Source {
 }
 
 /// `above.name`, with the name in quotes where it is not a bare key.
-pub(super) fn join(above: &str, name: &str) -> String {
+pub(crate) fn join(above: &str, name: &str) -> String {
     let bare = name
         .chars()
         .all(|c| c.is_alphanumeric() || c == '_' || c == '-');
