@@ -4,6 +4,7 @@
 //! distance field measures in millimetres.
 
 pub mod sampled;
+pub mod sample;
 
 use crate::num::{Aabb, Interval};
 use glam::DVec3;

@@ -36,11 +36,28 @@ impl Lattice {
     /// The box from the first to the last sample.
     pub fn bounds(&self) -> Aabb {
         let [x, y, z] = self.size;
-        Aabb::new(self.origin, self.point(x - 1, y - 1, z - 1))
+        let last = |n: u32| n.saturating_sub(1);
+        Aabb::new(self.origin, self.point(last(x), last(y), last(z)))
     }
 
     /// Number of samples in all.
     pub fn samples(&self) -> u64 {
-        self.size.iter().map(|&n| u64::from(n)).product()
+        self.size
+            .iter()
+            .fold(1, |n, &side| u64::saturating_mul(n, u64::from(side)))
     }
+
+    /// Whether f32 files can tell the points of a cell apart: the step is at least 256 ulps of the
+    /// largest coordinate. Below that no mesh file of f32 positions can be trusted.
+    pub fn fits_f32(&self) -> bool {
+        let b = self.bounds();
+        let largest = b.min.abs().max(b.max.abs()).max_element();
+        largest < f64::from(f32::MAX) && self.step >= 256.0 * ulp(largest)
+    }
+}
+
+/// Distance between neighbouring f32 numbers near `x`.
+pub fn ulp(x: f64) -> f64 {
+    let a = (x.abs() as f32).max(f32::MIN_POSITIVE);
+    f64::from(a.next_up()) - f64::from(a)
 }

@@ -4,4 +4,4 @@ mod bricks;
 mod lattice;
 
 pub use bricks::{BRICK, Brick, Bricks};
-pub use lattice::Lattice;
+pub use lattice::{Lattice, ulp};

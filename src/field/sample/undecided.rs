@@ -1,0 +1,160 @@
+//! What samples alone cannot show: components and holes smaller than a cell.
+
+use super::prune::Pruner;
+use super::{Sampling, side, stored};
+use crate::field::Field;
+use crate::grid::{BRICK, Brick, Lattice};
+use crate::job::{Cancelled, Job, check};
+use crate::num::Aabb;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Cells that look empty or full by their eight samples, though the bound over them contains zero.
+///
+/// When none is missed and none left, the samples show every component of the shape and of the
+/// space round it, except those that lie wholly in cells that the surface crosses anyway.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Undecided {
+    /// Cells of one sign whose own bound contains zero; the sum of the three below.
+    pub undecided: u64,
+    /// Of these, cells whose parts all have bounds that exclude zero.
+    pub decided: u64,
+    /// Of these, cells inside which a point of the other sign was found.
+    pub missed: u64,
+    /// Of these, cells that remain undecided at the floor of the subdivision.
+    pub left: u64,
+    /// A point of the other sign, the first in order.
+    pub example: Option<DVec3>,
+}
+
+/// Counts undecided cells, and subdivides each of them `floor_levels` times to decide it. With
+/// none they are only counted, and all are left.
+///
+/// Costs a bound for every cell near the surface, and up to `27 * 8^(floor_levels - 1)` values for
+/// every undecided one.
+pub fn undecided(
+    f: &dyn Field,
+    of: &Sampling,
+    floor_levels: u32,
+    job: &dyn Job,
+) -> Result<Undecided, Cancelled> {
+    job.stage("decide");
+    let bricks = &of.bricks;
+    let search = Search {
+        f,
+        lattice: &bricks.lattice,
+        pruner: Pruner::new(f, &bricks.lattice),
+    };
+    let count = |i: usize| {
+        check(job)?;
+        let mut found = Undecided::default();
+        if matches!(bricks.bricks.get(i), Some(Brick::Band(_))) {
+            search.block(
+                of,
+                bricks.place(i).map(|b| b * BRICK),
+                BRICK,
+                floor_levels,
+                &mut found,
+            );
+        }
+        Ok(found)
+    };
+    let parts = (0..bricks.bricks.len()).into_par_iter().map(count);
+    let parts = parts.collect::<Result<Vec<_>, Cancelled>>()?;
+    Ok(parts
+        .into_iter()
+        .fold(Undecided::default(), |a, b| Undecided {
+            undecided: a.undecided + b.undecided,
+            decided: a.decided + b.decided,
+            missed: a.missed + b.missed,
+            left: a.left + b.left,
+            example: a.example.or(b.example),
+        }))
+}
+
+struct Search<'a> {
+    f: &'a dyn Field,
+    lattice: &'a Lattice,
+    pruner: Pruner<'a>,
+}
+
+/// What the subdivision of a cell shows.
+enum Found {
+    Decided,
+    Left,
+    Other(DVec3),
+}
+
+impl Search<'_> {
+    /// Counts the cells from `lo`, `cells` a side.
+    fn block(&self, of: &Sampling, lo: [u32; 3], cells: u32, levels: u32, out: &mut Undecided) {
+        if (0..3).any(|a| lo[a].saturating_add(1) >= self.lattice.size[a]) {
+            return;
+        }
+        if self.pruner.closed_side(lo, cells).is_some() {
+            return;
+        }
+        if cells == 1 {
+            return self.cell(of, lo, levels, out);
+        }
+        for n in 0..8 {
+            let part = std::array::from_fn(|a| lo[a] + cells / 2 * (n >> a & 1));
+            self.block(of, part, cells / 2, levels, out);
+        }
+    }
+
+    fn cell(&self, of: &Sampling, lo: [u32; 3], levels: u32, out: &mut Undecided) {
+        let corner = |n: u32| -> [i64; 3] {
+            std::array::from_fn(|a| i64::from(lo[a]) + i64::from(n >> a & 1))
+        };
+        let sign = |n| of.bricks.sample(corner(n), -1.0, 1.0) < 0.0;
+        let inside = sign(0);
+        if (1..8).any(|n| sign(n) != inside) {
+            return;
+        }
+        out.undecided += 1;
+        let [i, j, k] = lo;
+        let b = Aabb::new(
+            self.lattice.point(i, j, k),
+            self.lattice.point(i + 1, j + 1, k + 1),
+        );
+        match self.subdivide(&b, inside, levels) {
+            Found::Decided => out.decided += 1,
+            Found::Left => out.left += 1,
+            Found::Other(p) => {
+                out.missed += 1;
+                out.example = out.example.or(Some(p));
+            }
+        }
+    }
+
+    /// Halves a box that its bound does not decide.
+    fn subdivide(&self, b: &Aabb, inside: bool, levels: u32) -> Found {
+        if levels == 0 {
+            return Found::Left;
+        }
+        let steps = [b.min, b.centre(), b.max];
+        let point = |n: usize| DVec3::new(steps[n % 3].x, steps[n / 3 % 3].y, steps[n / 9].z);
+        let at: [DVec3; 27] = std::array::from_fn(point);
+        let mut values = [0.0; 27];
+        self.f.values(&at, &mut values);
+        let other = |v: &f64| (side(stored(*v)) == super::Side::Inside) != inside;
+        if let Some(n) = values.iter().position(other) {
+            return Found::Other(at[n]);
+        }
+        let mut all = Found::Decided;
+        for n in 0..8 {
+            let lo = (n & 1) + 3 * (n >> 1 & 1) + 9 * (n >> 2);
+            let part = Aabb::new(at[lo], at[lo + 13]);
+            if self.pruner.side(&part).is_some() {
+                continue;
+            }
+            match self.subdivide(&part, inside, levels - 1) {
+                Found::Other(p) => return Found::Other(p),
+                Found::Left => all = Found::Left,
+                Found::Decided => {}
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,83 @@
+//! One brick with its surroundings, as the meshers see it.
+
+use crate::grid::{BRICK, Brick, Bricks, Lattice};
+
+/// The samples round a brick: `N` a side, of which the first is `back` before the brick's first.
+pub(super) struct Block<const N: usize> {
+    /// x fastest.
+    pub samples: Vec<f32>,
+}
+
+/// The first sample of brick `b`.
+pub(super) fn first(b: [u32; 3]) -> [i64; 3] {
+    b.map(|n| i64::from(n) * i64::from(BRICK))
+}
+
+impl<const N: usize> Block<N> {
+    /// None where all samples have one sign. Whatever lies on the border of the lattice or beyond
+    /// is outside.
+    pub(super) fn gather(bricks: &Bricks<f32>, b: [u32; 3], back: u32) -> Option<Self> {
+        if uniform(bricks, b, back) {
+            return None;
+        }
+        let lo = first(b).map(|i| i - i64::from(back));
+        let fill = bricks.lattice.step as f32;
+        let mut samples = vec![fill; N * N * N];
+        for (n, row) in samples.chunks_exact_mut(N).enumerate() {
+            let at = [lo[0], lo[1] + (n % N) as i64, lo[2] + (n / N) as i64];
+            bricks.row(at, -fill, fill, row);
+            put_border_outside(&bricks.lattice, at, row);
+        }
+        let inside = samples.iter().filter(|&&v| v < 0.0).count();
+        if inside == 0 || inside == samples.len() {
+            None
+        } else {
+            Some(Self { samples })
+        }
+    }
+}
+
+/// Samples on the border and beyond become positive, as `field::sample` leaves them.
+fn put_border_outside(lattice: &Lattice, at: [i64; 3], row: &mut [f32]) {
+    let last = lattice.size.map(|n| i64::from(n) - 1);
+    let least = (lattice.step * 1e-3) as f32;
+    let whole = (1..3).any(|a| at[a] <= 0 || at[a] >= last[a]);
+    for (i, v) in (at[0]..).zip(row) {
+        if whole || i <= 0 || i >= last[0] {
+            *v = v.max(least);
+        }
+    }
+}
+
+/// Whether the brick and its surroundings certainly have one sign.
+fn uniform(bricks: &Bricks<f32>, b: [u32; 3], back: u32) -> bool {
+    let lo = first(b);
+    let on_border = (0..3)
+        .any(|a| lo[a] == 0 || lo[a] + i64::from(BRICK) + 1 >= i64::from(bricks.lattice.size[a]));
+    let kind = |d: [i64; 3]| {
+        let at = [0, 1, 2].map(|a| i64::from(b[a]) + d[a]);
+        let at = at.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+        match bricks.brick(at) {
+            Some(Brick::Inside) if on_border => None,
+            Some(Brick::Inside) => Some(true),
+            Some(Brick::Outside) | None => Some(false),
+            Some(Brick::Band(_)) => None,
+        }
+    };
+    let Some(mine) = kind([0; 3]) else {
+        return false;
+    };
+    let range = || -i64::from(back.min(1))..=1;
+    range().all(|z| range().all(|y| range().all(|x| kind([x, y, z]) == Some(mine))))
+}
+
+/// Cuts a slice into consecutive parts of the given sizes.
+pub(super) fn cut<T>(mut all: &mut [T], sizes: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
+    let mut parts = Vec::new();
+    for size in sizes {
+        let (part, rest) = all.split_at_mut(size.min(all.len()));
+        parts.push(part);
+        all = rest;
+    }
+    parts
+}
