@@ -1,0 +1,90 @@
+//! Which faces cut, touch or fold over others: a box hierarchy finds the pairs, exact
+//! predicates judge them.
+
+use super::triangles::{Triangle, meet};
+use super::weld::Welded;
+use crate::num::Aabb;
+use glam::{DVec3, Vec3A};
+use obvhs::{BvhBuildParams, aabb::Aabb as Box32, bvh2::builder::build_bvh2};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+/// Beyond this (mm) the predicates' products would overflow.
+const FARTHEST: f64 = 1e100;
+
+/// Whether each face meets another beyond the vertices and the edge they share. Faces without
+/// area are left out. `None` when some point is not finite, or absurdly far away.
+pub(super) fn contacts(mesh: &Welded) -> Option<Vec<bool>> {
+    if !mesh
+        .points
+        .iter()
+        .all(|p| p.abs().cmplt(DVec3::splat(FARTHEST)).all())
+    {
+        return None;
+    }
+    let mut faces = Vec::with_capacity(mesh.faces.len());
+    let mut triangles = Vec::with_capacity(mesh.faces.len());
+    for (i, names) in mesh.faces.iter().enumerate() {
+        if let Some(t) = Triangle::new(names.map(|v| mesh.points[v as usize]), *names) {
+            faces.push(i);
+            triangles.push(t);
+        }
+    }
+    let mut met = vec![false; mesh.faces.len()];
+    for (i, met_it) in faces.into_iter().zip(meetings(&triangles)) {
+        met[i] = met_it;
+    }
+    Some(met)
+}
+
+fn meetings(triangles: &[Triangle]) -> Vec<bool> {
+    let met: Vec<AtomicBool> = triangles.iter().map(|_| AtomicBool::new(false)).collect();
+    let boxes = boxes(triangles);
+    if boxes.is_empty() {
+        return Vec::new();
+    }
+    let tree = build_bvh2(
+        &boxes,
+        BvhBuildParams::fast_build(),
+        &mut Default::default(),
+    );
+    // Neighbours in the tree are neighbours in space: a run of queries stays in the cache.
+    tree.primitive_indices.par_chunks(256).for_each(|run| {
+        for &i in run {
+            let (i, mine) = (i as usize, &boxes[i as usize]);
+            tree.aabb_traverse(*mine, |tree, node| {
+                let node = &tree.nodes[node as usize];
+                let first = node.first_index as usize;
+                for &j in &tree.primitive_indices[first..first + node.prim_count as usize] {
+                    let j = j as usize;
+                    // Once both are known to meet something the pair has nothing to add: a pile
+                    // of copies costs no predicates. The marks only ever rise, so their end
+                    // state does not depend on who comes first.
+                    let news = j > i && !(met[i].load(Relaxed) && met[j].load(Relaxed));
+                    if news && mine.intersect_aabb(&boxes[j]) && meet(&triangles[i], &triangles[j])
+                    {
+                        met[i].store(true, Relaxed);
+                        met[j].store(true, Relaxed);
+                    }
+                }
+                true
+            });
+        }
+    });
+    met.into_iter().map(AtomicBool::into_inner).collect()
+}
+
+/// Boxes in f32, in a frame of about unit size. Every step of the way there is monotone, also
+/// in its rounding, so boxes that met still meet.
+fn boxes(triangles: &[Triangle]) -> Vec<Box32> {
+    let all = Aabb::of(triangles.iter().flat_map(|t| t.at));
+    let (centre, size) = (all.centre(), all.radius().max(f64::MIN_POSITIVE));
+    let small = |p: DVec3| -> Vec3A { ((p - centre) / size).as_vec3a() };
+    triangles
+        .par_iter()
+        .map(|t| {
+            let own = Aabb::of(t.at);
+            Box32::new(small(own.min), small(own.max))
+        })
+        .collect()
+}

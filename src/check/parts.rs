@@ -1,0 +1,178 @@
+//! The pieces of a mesh: which of its components are solids, which are cavities, and which are
+//! crumbs to sweep off.
+
+use super::topology::{Topology, topology};
+use super::weld::{Welded, weld};
+use crate::mesh::TriMesh;
+use crate::num::Aabb;
+use glam::DVec3;
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// A component: faces joined through edges, after joining equal points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Number of faces.
+    pub faces: usize,
+    /// Signed volume in mm³: positive for a solid, negative for a cavity; meaningless if open.
+    pub volume_mm3: f64,
+    /// The box round it.
+    pub bounds: Aabb,
+}
+
+/// How many components stand for matter and how many for holes inside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Pieces {
+    /// Components of positive volume.
+    pub solids: usize,
+    /// Components of negative volume.
+    pub cavities: usize,
+}
+
+/// What [`drop_crumbs`] took away.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Crumbs {
+    /// Number of solids dropped.
+    pub count: usize,
+    /// Their volume in mm³, less the cavities in them.
+    pub volume_mm3: f64,
+    /// That volume over the volume of the whole mesh.
+    pub share: f64,
+}
+
+/// The component of each face, numbered by first face, and the components.
+pub fn parts(mesh: &TriMesh) -> (Vec<u32>, Vec<Part>) {
+    let welded = weld(mesh);
+    let topology = topology(&welded);
+    let parts = parts_of(&welded, &topology.labels, topology.components);
+    (topology.labels, parts)
+}
+
+/// Counts solids and cavities; meaningful for closed meshes.
+pub fn solid_pieces(mesh: &TriMesh) -> Pieces {
+    count(&parts(mesh).1)
+}
+
+/// The mesh without its small solids: those whose volume, less their cavities, is under that
+/// share of the whole. Their cavities go with them; the largest solid always stays, and so does
+/// a cavity that lies in no solid. Meaningful for closed meshes.
+pub fn drop_crumbs(mesh: &TriMesh, smallest_share: f64) -> (TriMesh, Crumbs) {
+    let welded = weld(mesh);
+    let Topology {
+        labels, components, ..
+    } = topology(&welded);
+    let parts = parts_of(&welded, &labels, components);
+    let home = homes(&welded, &labels, &parts);
+    let mut volumes = vec![0.0; parts.len()];
+    for (part, home) in parts.iter().zip(&home) {
+        if let Some(home) = home {
+            volumes[*home] += part.volume_mm3;
+        }
+    }
+    let whole: f64 = volumes.iter().sum();
+    let largest = (0..parts.len()).max_by(|&i, &j| volumes[i].total_cmp(&volumes[j]));
+    let crumb: Vec<bool> = (0..parts.len())
+        .map(|i| home[i] == Some(i) && Some(i) != largest && volumes[i] < smallest_share * whole)
+        .collect();
+    let mut swept = Crumbs::default();
+    for i in (0..parts.len()).filter(|&i| crumb[i]) {
+        swept.count += 1;
+        swept.volume_mm3 += volumes[i];
+    }
+    if swept.count == 0 {
+        return (mesh.clone(), swept);
+    }
+    swept.share = swept.volume_mm3 / whole;
+    let stays = |i: usize| !home[labels[i] as usize].is_some_and(|home| crumb[home]);
+    (subset(mesh, stays), swept)
+}
+
+pub(super) fn count(parts: &[Part]) -> Pieces {
+    Pieces {
+        solids: parts.iter().filter(|p| p.volume_mm3 > 0.0).count(),
+        cavities: parts.iter().filter(|p| p.volume_mm3 < 0.0).count(),
+    }
+}
+
+pub(super) fn parts_of(mesh: &Welded, labels: &[u32], components: usize) -> Vec<Part> {
+    let origin = Aabb::of(mesh.points.iter().copied()).centre();
+    let none = Part {
+        faces: 0,
+        volume_mm3: 0.0,
+        bounds: Aabb::EMPTY,
+    };
+    let mut parts = vec![none; components];
+    for (face, &label) in mesh.faces.iter().zip(labels) {
+        let corners = face.map(|v| mesh.points[v as usize]);
+        let [a, b, c] = corners.map(|p| p - origin);
+        let part = &mut parts[label as usize];
+        part.faces += 1;
+        part.volume_mm3 += a.dot(b.cross(c)) / 6.0;
+        part.bounds = corners.into_iter().fold(part.bounds, Aabb::with);
+    }
+    parts
+}
+
+/// The solid that each part belongs to: itself for a solid, the innermost one round a cavity.
+fn homes(mesh: &Welded, labels: &[u32], parts: &[Part]) -> Vec<Option<usize>> {
+    let mut solids: Vec<usize> = (0..parts.len())
+        .filter(|&i| parts[i].volume_mm3 > 0.0)
+        .collect();
+    solids.sort_by(|&i, &j| parts[i].volume_mm3.total_cmp(&parts[j].volume_mm3));
+    let mut faces = vec![Vec::new(); parts.len()];
+    for (i, &label) in labels.iter().enumerate() {
+        faces[label as usize].push(i);
+    }
+    let home = |(i, part): (usize, &Part)| {
+        if part.volume_mm3 > 0.0 {
+            return Some(i);
+        }
+        let inside = mesh.points[mesh.faces[*faces[i].first()?][0] as usize];
+        let holds = |&&s: &&usize| {
+            let (outer, inner) = (&parts[s].bounds, &part.bounds);
+            outer.contains(inner.min)
+                && outer.contains(inner.max)
+                && winding(mesh, &faces[s], inside) > 0.5
+        };
+        solids.iter().find(holds).copied()
+    };
+    parts.iter().enumerate().map(home).collect()
+}
+
+/// Winding number of some faces round a point (Van Oosterom and Strackee 1983, eq. 8).
+fn winding(mesh: &Welded, faces: &[usize], p: DVec3) -> f64 {
+    let angle = |&i: &usize| {
+        let [a, b, c] = mesh.faces[i].map(|v| mesh.points[v as usize] - p);
+        let (x, y, z) = (a.length(), b.length(), c.length());
+        let below = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
+        2.0 * a.dot(b.cross(c)).atan2(below)
+    };
+    faces.iter().map(angle).sum::<f64>() / (4.0 * PI)
+}
+
+/// The faces that stay, with the points they use, in their order. Faces that name points which
+/// are not there do not stay.
+fn subset(mesh: &TriMesh, stays: impl Fn(usize) -> bool) -> TriMesh {
+    let total = mesh.points.len();
+    let valid = |f: &[u32; 3]| f.iter().all(|&v| (v as usize) < total);
+    let faces = mesh
+        .faces
+        .iter()
+        .enumerate()
+        .filter(|(i, f)| stays(*i) && valid(f));
+    let kept: Vec<[u32; 3]> = faces.map(|(_, f)| *f).collect();
+    let mut name = vec![u32::MAX; total];
+    kept.iter().flatten().for_each(|&v| name[v as usize] = 0);
+    let mut points = Vec::new();
+    for (v, name) in name.iter_mut().enumerate().filter(|(_, name)| **name == 0) {
+        *name = points.len() as u32;
+        points.push(mesh.points[v]);
+    }
+    TriMesh {
+        points,
+        faces: kept
+            .into_iter()
+            .map(|f| f.map(|v| name[v as usize]))
+            .collect(),
+    }
+}

@@ -1,0 +1,179 @@
+//! How the triangles hang together: edges, fans round vertices, components.
+
+use super::weld::Welded;
+use rayon::prelude::*;
+
+/// Counts of everything a clean closed surface has none of, and its components.
+pub(super) struct Topology {
+    /// Undirected edges.
+    pub edges: usize,
+    /// Edges with one triangle.
+    pub open_edges: usize,
+    /// Edges with more than two triangles.
+    pub crowded_edges: usize,
+    /// Edges whose two triangles run along them the same way.
+    pub opposed_edges: usize,
+    /// Whether every edge has exactly two triangles.
+    pub manifold_edges: bool,
+    /// Whether neighbours agree on which side is outside.
+    pub oriented: bool,
+    /// Whether the directed edges cancel: also true where four triangles meet at one edge.
+    pub closed: bool,
+    /// Vertices with several fans of triangles that no edge joins.
+    pub split_vertices: usize,
+    /// Vertices that a triangle uses.
+    pub vertices: usize,
+    /// Component of each face, numbered by first face.
+    pub labels: Vec<u32>,
+    /// Number of components: faces joined through edges.
+    pub components: usize,
+}
+
+impl Topology {
+    /// Total genus over the components; `None` unless closed and manifold.
+    pub fn genus(&self) -> Option<i64> {
+        let whole = self.closed && self.manifold_edges && self.split_vertices == 0;
+        let faces = self.labels.len() as i64;
+        let euler = self.vertices as i64 - self.edges as i64 + faces;
+        whole.then(|| self.components as i64 - euler.div_euclid(2))
+    }
+}
+
+/// A directed edge: its undirected key and the corner it starts from, `3 * face + side`.
+type HalfEdge = (u64, u64);
+
+pub(super) fn topology(mesh: &Welded) -> Topology {
+    let halves = half_edges(&mesh.faces);
+    let start = |corner: u64| mesh.faces[corner as usize / 3][corner as usize % 3];
+    let end = |corner: u64| start(following(corner));
+    let mut t = Topology {
+        edges: 0,
+        open_edges: 0,
+        crowded_edges: 0,
+        opposed_edges: 0,
+        manifold_edges: !mesh.faces.is_empty(),
+        oriented: !mesh.faces.is_empty(),
+        closed: !mesh.faces.is_empty(),
+        split_vertices: 0,
+        vertices: 0,
+        labels: Vec::new(),
+        components: 0,
+    };
+    let mut corners = Forest::new(mesh.faces.len() * 3);
+    let mut faces = Forest::new(mesh.faces.len());
+    for edge in halves.chunk_by(|a, b| a.0 == b.0) {
+        let sum: i64 = edge
+            .iter()
+            .map(|h| if start(h.1) < end(h.1) { 1 } else { -1 })
+            .sum();
+        t.edges += 1;
+        t.open_edges += usize::from(edge.len() == 1);
+        t.crowded_edges += usize::from(edge.len() > 2);
+        t.opposed_edges += usize::from(edge.len() == 2 && sum != 0);
+        t.manifold_edges &= edge.len() == 2;
+        t.closed &= sum == 0;
+        t.oriented &= sum.abs() <= 1 && (edge.len() % 2 == 1 || sum == 0);
+        for pair in edge.windows(2) {
+            let (a, b) = (pair[0].1, pair[1].1);
+            let (mut here, mut there) = (b, following(b));
+            if start(a) != start(b) {
+                std::mem::swap(&mut here, &mut there);
+            }
+            corners.join(a as usize, here as usize);
+            corners.join(following(a) as usize, there as usize);
+            faces.join(a as usize / 3, b as usize / 3);
+        }
+    }
+    count_fans(mesh, &mut corners, &mut t);
+    (t.labels, t.components) = faces.labels();
+    t
+}
+
+/// The next corner of the same face.
+fn following(corner: u64) -> u64 {
+    if corner % 3 == 2 {
+        corner - 2
+    } else {
+        corner + 1
+    }
+}
+
+fn half_edges(faces: &[[u32; 3]]) -> Vec<HalfEdge> {
+    let sides = |(i, f): (usize, &[u32; 3])| {
+        [(f[0], f[1]), (f[1], f[2]), (f[2], f[0])]
+            .into_iter()
+            .enumerate()
+            .map(move |(k, (a, b))| {
+                (
+                    u64::from(a.min(b)) << 32 | u64::from(a.max(b)),
+                    3 * i as u64 + k as u64,
+                )
+            })
+    };
+    let mut halves: Vec<HalfEdge> = faces
+        .par_iter()
+        .enumerate()
+        .flat_map_iter(|x| {
+            let ((i, f), sides) = (x, &sides);
+            sides((i, f)).collect::<Vec<_>>()
+        })
+        .collect();
+    halves.par_sort_unstable();
+    halves
+}
+
+fn count_fans(mesh: &Welded, corners: &mut Forest, t: &mut Topology) {
+    let mut fans = vec![0_u32; mesh.points.len()];
+    for (i, f) in mesh.faces.iter().enumerate() {
+        for (k, &v) in f.iter().enumerate() {
+            let corner = 3 * i + k;
+            fans[v as usize] += u32::from(corners.root(corner) == corner);
+        }
+    }
+    t.split_vertices = fans.iter().filter(|&&n| n > 1).count();
+    t.vertices = fans.iter().filter(|&&n| n > 0).count();
+}
+
+/// Disjoint sets; the root of a set is its lowest member.
+struct Forest {
+    parent: Vec<u32>,
+}
+
+impl Forest {
+    fn new(len: usize) -> Self {
+        Self {
+            parent: (0..len as u32).collect(),
+        }
+    }
+
+    fn root(&mut self, mut i: usize) -> usize {
+        while self.parent[i] as usize != i {
+            let up = self.parent[self.parent[i] as usize];
+            self.parent[i] = up;
+            i = up as usize;
+        }
+        i
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        let (low, high) = (a.min(b), a.max(b));
+        self.parent[high] = low as u32;
+    }
+
+    /// Set of each member, numbered by first member, and the number of sets.
+    fn labels(mut self) -> (Vec<u32>, usize) {
+        let mut labels = vec![0; self.parent.len()];
+        let mut sets = 0;
+        for i in 0..labels.len() {
+            let root = self.root(i);
+            if root == i {
+                labels[i] = sets;
+                sets += 1;
+            } else {
+                labels[i] = labels[root];
+            }
+        }
+        (labels, sets as usize)
+    }
+}

@@ -1,0 +1,85 @@
+//! Points joined where their coordinates are the same bits.
+
+use crate::mesh::TriMesh;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// A mesh whose points are distinct and all used.
+pub(super) struct Welded {
+    pub points: Vec<DVec3>,
+    /// As many as the mesh has, in its order.
+    pub faces: Vec<[u32; 3]>,
+    /// Faces that named a point the mesh does not have; they stand as `[0, 0, 0]`.
+    pub astray: usize,
+}
+
+/// Joins points with the same coordinates (-0 counts as 0) and leaves out unused ones; the
+/// points that stay keep their order.
+pub(super) fn weld(mesh: &TriMesh) -> Welded {
+    let total = mesh.points.len();
+    let missing = |f: &[u32; 3]| f.iter().any(|&v| v as usize >= total);
+    let mut used = vec![false; total];
+    let mut astray = 0;
+    for f in &mesh.faces {
+        if missing(f) {
+            astray += 1;
+        } else {
+            f.iter().for_each(|&v| used[v as usize] = true);
+        }
+    }
+    let bits = |v: u32| (mesh.points[v as usize] + 0.0).to_array().map(f64::to_bits);
+    let mut order: Vec<u32> = (0..total as u32).filter(|&v| used[v as usize]).collect();
+    order.par_sort_unstable_by_key(|&v| (bits(v), v));
+    // The first of each run of equals stands for the run.
+    let mut first: Vec<u32> = (0..total as u32).collect();
+    for pair in 1..order.len() {
+        let (a, b) = (order[pair - 1], order[pair]);
+        if bits(a) == bits(b) {
+            first[b as usize] = first[a as usize];
+        }
+    }
+    let mut points = Vec::new();
+    let mut name = vec![0_u32; total];
+    for v in 0..total {
+        let f = first[v] as usize;
+        if f == v && used[v] {
+            name[v] = points.len() as u32;
+            points.push(mesh.points[v]);
+        } else if f != v {
+            name[v] = name[f];
+        }
+    }
+    if points.is_empty() && !mesh.faces.is_empty() {
+        points.push(DVec3::ZERO);
+    }
+    let rename = |f: &[u32; 3]| {
+        if missing(f) {
+            [0; 3]
+        } else {
+            f.map(|v| name[v as usize])
+        }
+    };
+    Welded {
+        points,
+        faces: mesh.faces.par_iter().map(rename).collect(),
+        astray,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joins_equal_points_and_drops_unused_ones() {
+        let p = |x: f64| DVec3::new(x, 1.0, 2.0);
+        let mesh = TriMesh {
+            points: vec![p(9.0), p(0.0), p(1.0), p(2.0), p(-0.0), p(3.0)],
+            faces: vec![[1, 2, 3], [4, 3, 5], [0, 1, 77]],
+        };
+        let w = weld(&mesh);
+        assert_eq!(w.points, [0.0, 1.0, 2.0, 3.0].map(p));
+        assert_eq!(w.faces, [[0, 1, 2], [0, 2, 3], [0, 0, 0]]);
+        assert_eq!(w.astray, 1);
+    }
+}
