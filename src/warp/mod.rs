@@ -1,13 +1,8 @@
-//! Space maps: affine, twist, taper, bend, forward and inverse, with a bound on their stretch.
+//! Space maps: twist, taper and bend along z (Barr 1984), forward and inverse, with honest bounds
+//! on their stretch and on the image of a ball.
 
-/// Twist, taper and bend along z over a length of `2 * half_length` centred on z = 0
-/// (Barr 1984; METHODS H).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Deform {
-    /// Total twist from the low to the high end, radians.
-    pub twist: f64,
-    /// Size at the high end over size at the low end; 1 is none.
-    pub taper: f64,
-    /// Total bend from the low to the high end, radians; the axis curves in the y-z plane.
-    pub bend: f64,
-}
+mod barr;
+mod deform;
+
+pub use barr::{Ball, Barr};
+pub use deform::{Deform, WarpError};

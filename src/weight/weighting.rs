@@ -1,5 +1,8 @@
 use crate::num::Interval;
 
+/// Covers the round-off of the few operations behind a weight.
+const SLACK: f64 = 1e-12;
+
 /// How feature distances become weights that sum to one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weighting {
@@ -10,9 +13,10 @@ pub enum Weighting {
         /// 2 unless told otherwise; 4 is sharper.
         power: f64,
     },
-    /// Paper 001, eq. 5, to the letter.
+    /// Paper 001, eq. 5, to the letter: depths inside, inverse distances outside all features. It
+    /// jumps where features share a face; two or more distances of zero share equally.
     Transfinite,
-    /// Paper 001, eq. 4 (Lerios 1995): (d + e)^-2 of the distance outside.
+    /// Paper 001, eq. 4 (Lerios 1995): (d + e)^-2 of the distance outside, 0 inside.
     InverseSquare {
         /// e, mm.
         epsilon: f64,
@@ -22,13 +26,264 @@ pub enum Weighting {
 impl Weighting {
     /// Weights of the features at distances `d`; `out` is as long as `d` and sums to one.
     pub fn weigh(&self, d: &[f64], out: &mut [f64]) {
-        let _ = (d, out);
-        todo!()
+        match *self {
+            Self::Smooth { .. } | Self::InverseSquare { .. } => {
+                for (w, &d) in out.iter_mut().zip(d) {
+                    *w = self.kernel(d);
+                }
+            }
+            Self::Transfinite => transfinite(d, out),
+        }
+        normalise(out);
     }
 
     /// Enclosures of the weights when each distance lies in its interval.
+    ///
+    /// With kernels in `[lo, hi]` a weight lies between `lo_i / (lo_i + sum of the others' hi)` and
+    /// `hi_i / (hi_i + sum of the others' lo)` (METHODS D).
     pub fn enclose(&self, d: &[Interval], out: &mut [Interval]) {
-        let _ = (d, out);
-        todo!()
+        match *self {
+            Self::Smooth { .. } | Self::InverseSquare { .. } => {
+                shares(d, out, |d| {
+                    Interval::new(self.kernel(d.hi), self.kernel(d.lo))
+                });
+            }
+            Self::Transfinite => enclose_transfinite(d, out),
+        }
+    }
+
+    /// The unnormalised weight at distance `d`; falls as `d` grows.
+    fn kernel(&self, d: f64) -> f64 {
+        match *self {
+            Self::Smooth { epsilon, power } => {
+                let base = 1.0 + d.abs() / epsilon;
+                let base = if d < 0.0 { base } else { 1.0 / base };
+                // powers of two are what is used, and powf is slow
+                match power {
+                    2.0 => base * base,
+                    4.0 => (base * base) * (base * base),
+                    _ => base.powf(power),
+                }
+            }
+            Self::InverseSquare { epsilon } => (d.max(0.0) + epsilon).powi(-2),
+            Self::Transfinite => 1.0 / d.abs(),
+        }
+    }
+}
+
+/// Eq. 5 before the division by the sum.
+fn transfinite(d: &[f64], out: &mut [f64]) {
+    let least = d.iter().copied().fold(f64::INFINITY, f64::min);
+    for (w, &d) in out.iter_mut().zip(d) {
+        *w = if least == f64::INFINITY {
+            0.0
+        } else if least < 0.0 {
+            (-d).max(0.0)
+        } else if least == 0.0 {
+            // the limit of the products: what touches a surface takes everything
+            f64::from(u8::from(d == 0.0))
+        } else {
+            least / d
+        };
+    }
+}
+
+/// Divides by the sum. Where that cannot be done (all kernels 0, or one infinite) those with the
+/// largest kernel share equally.
+fn normalise(out: &mut [f64]) {
+    let sum: f64 = out.iter().sum();
+    if sum > 0.0 && sum.is_finite() {
+        out.iter_mut().for_each(|w| *w /= sum);
+        return;
+    }
+    let most = out.iter().copied().fold(0.0, f64::max);
+    let count = out.iter().filter(|w| **w == most).count().max(1);
+    let share = 1.0 / count as f64;
+    out.iter_mut()
+        .for_each(|w| *w = if *w == most { share } else { 0.0 });
+}
+
+/// Enclosures of the shares of kernels known as intervals.
+fn shares(d: &[Interval], out: &mut [Interval], kernel: impl Fn(&Interval) -> Interval) {
+    // the others' sum as left plus right: total minus own would cancel
+    let mut left = Interval::point(0.0);
+    for (o, d) in out.iter_mut().zip(d) {
+        *o = left;
+        left = left + kernel(d);
+    }
+    let mut right = Interval::point(0.0);
+    for (o, d) in out.iter_mut().zip(d).rev() {
+        let own = kernel(d);
+        let others = *o + right;
+        *o = Interval::new(share(own.lo, others.hi, 0.0), share(own.hi, others.lo, 1.0));
+        *o = o.widen(SLACK).clamp(0.0, 1.0);
+        right = right + own;
+    }
+}
+
+fn share(own: f64, others: f64, unknown: f64) -> f64 {
+    let s = own / (own + others);
+    if s.is_nan() { unknown } else { s }
+}
+
+fn enclose_transfinite(d: &[Interval], out: &mut [Interval]) {
+    let inside = d.iter().any(|d| d.hi < 0.0);
+    let outside = d.iter().all(|d| d.lo > 0.0);
+    if inside {
+        shares(d, out, |d| {
+            Interval::new((-d.hi).max(0.0), (-d.lo).max(0.0))
+        });
+    } else {
+        // Outside all features, or not known. A feature that is certainly left takes nothing inside
+        // another and its inverse distance outside; one that may be touched takes anything.
+        shares(d, out, |d| Interval::new(inverse(d.hi), inverse(d.lo)));
+        if !outside {
+            let alone = d.len() == 1;
+            for (o, d) in out.iter_mut().zip(d) {
+                let hi = if d.lo > 0.0 { o.hi } else { 1.0 };
+                *o = Interval::new(if alone { 1.0 } else { 0.0 }, hi);
+            }
+        }
+    }
+}
+
+fn inverse(d: f64) -> f64 {
+    if d > 0.0 { 1.0 / d } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const ALL: [Weighting; 4] = [
+        Weighting::Smooth {
+            epsilon: 27.0,
+            power: 2.0,
+        },
+        Weighting::Smooth {
+            epsilon: 9.0,
+            power: 4.0,
+        },
+        Weighting::Transfinite,
+        Weighting::InverseSquare { epsilon: 9.0 },
+    ];
+
+    fn weights(w: Weighting, d: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; d.len()];
+        w.weigh(d, &mut out);
+        out
+    }
+
+    fn close(a: &[f64], b: &[f64]) {
+        assert!(
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15),
+            "{a:?} {b:?}"
+        );
+    }
+
+    #[test]
+    fn known_values() {
+        // phi = 1/4 one epsilon outside, 4 one epsilon inside
+        let w = Weighting::Smooth {
+            epsilon: 10.0,
+            power: 2.0,
+        };
+        close(&weights(w, &[10.0, -10.0]), &[0.25 / 4.25, 4.0 / 4.25]);
+        close(
+            &weights(Weighting::Transfinite, &[-3.0, -1.0, 5.0]),
+            &[0.75, 0.25, 0.0],
+        );
+        // eq. 5 outside: the products of the others' distances, 12 : 6 : 4... of 2, 4, 6
+        let s = 24.0 + 12.0 + 8.0;
+        close(
+            &weights(Weighting::Transfinite, &[2.0, 4.0, 6.0]),
+            &[24.0 / s, 12.0 / s, 8.0 / s],
+        );
+        close(
+            &weights(Weighting::Transfinite, &[0.0, 4.0, 0.0]),
+            &[0.5, 0.0, 0.5],
+        );
+        close(
+            &weights(Weighting::InverseSquare { epsilon: 1.0 }, &[-5.0, 1.0]),
+            &[0.8, 0.2],
+        );
+    }
+
+    #[test]
+    fn extremes_stay_weights() {
+        for w in ALL {
+            for d in [
+                [f64::INFINITY; 2],
+                [f64::NEG_INFINITY; 2],
+                [1e300, -1e300],
+                [0.0, 0.0],
+            ] {
+                let got = weights(w, &d);
+                assert!(
+                    (got.iter().sum::<f64>() - 1.0).abs() < 1e-12,
+                    "{w:?} {d:?} {got:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_smooth_form_is_c1_through_the_surface() {
+        let w = Weighting::Smooth {
+            epsilon: 10.0,
+            power: 2.0,
+        };
+        let at = |d: f64| weights(w, &[d, 7.0])[0];
+        let h = 1e-6;
+        assert!(((at(h) - at(0.0)) - (at(0.0) - at(-h))).abs() < 1e-12);
+    }
+
+    proptest! {
+        #[test]
+        fn weights_share_one(d in prop::collection::vec(-200.0..500.0f64, 1..9)) {
+            for w in ALL {
+                let got = weights(w, &d);
+                prop_assert!((got.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+                prop_assert!(got.iter().all(|w| (0.0..=1.0).contains(w)));
+            }
+        }
+
+        #[test]
+        fn small_steps_change_little(d in prop::collection::vec(-200.0..500.0f64, 2..9), at in 0usize..9, h in -1e-3..1e-3f64) {
+            let mut e = d.clone();
+            let at = at % d.len();
+            e[at] += h;
+            // |grad w| <= (2 power / e) w (1 - w) <= power / (2 e)
+            for (w, slope) in [(ALL[0], 1.0 / 27.0), (ALL[1], 2.0 / 9.0), (ALL[3], 1.0 / 9.0)] {
+                for (a, b) in weights(w, &d).iter().zip(weights(w, &e)) {
+                    prop_assert!((a - b).abs() <= slope * h.abs() * 1.001 + 1e-14);
+                }
+            }
+        }
+
+        #[test]
+        fn enclosures_hold(d in prop::collection::vec((-60.0..60.0f64, 0.0..40.0f64), 1..7),
+                           u in prop::collection::vec(0.0..=1.0f64, 7)) {
+            let boxes: Vec<_> = d.iter().map(|&(lo, w)| Interval::new(lo, lo + w)).collect();
+            let at: Vec<_> = d.iter().zip(&u).map(|(&(lo, w), u)| lo + w * u).collect();
+            for w in ALL {
+                let mut out = vec![Interval::ALL; d.len()];
+                w.enclose(&boxes, &mut out);
+                for (o, x) in out.iter().zip(weights(w, &at)) {
+                    prop_assert!(o.contains(x), "{:?} {:?} {}", w, o, x);
+                }
+            }
+        }
+
+        #[test]
+        fn points_are_enclosed_tightly(d in prop::collection::vec(-200.0..500.0f64, 1..9)) {
+            let boxes: Vec<_> = d.iter().map(|&d| Interval::point(d)).collect();
+            for w in [ALL[0], ALL[1], ALL[3]] {
+                let mut out = vec![Interval::ALL; d.len()];
+                w.enclose(&boxes, &mut out);
+                prop_assert!(out.iter().all(|o| o.width() < 1e-11));
+            }
+        }
     }
 }
