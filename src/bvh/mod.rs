@@ -1,1 +1,137 @@
-//! bvh (to come).
+//! Triangles in a tree of boxes: nearest point, many nearest points at once, winding number,
+//! and which triangles touch.
+//!
+//! The tree's shape comes from `obvhs`, built in `f32` on a recentred unit box; the boxes are then
+//! made again in `f64` round the exact corners, so no query has to allow for `f32`.
+
+mod batch;
+mod contact;
+mod nearest;
+mod rim;
+#[cfg(test)]
+mod tests;
+mod triangle;
+mod winding;
+
+pub use batch::Hit;
+pub use contact::apart;
+pub use nearest::Nearest;
+pub use rim::Rim;
+pub use winding::Winding;
+
+use crate::num::Aabb;
+use glam::DVec3;
+use obvhs::{BvhBuildParams, bvh2::builder::build_bvh2_from_tris, triangle::Triangle};
+use triangle::Tri;
+
+/// One box of the tree: two children at `first` and `first + 1`, or `count` triangles from `first`.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    bounds: Aabb,
+    first: u32,
+    count: u32,
+}
+
+/// A set of triangles, ready for queries. May be empty.
+#[derive(Clone, Debug)]
+pub struct Bvh {
+    /// Children come after their parents; the root is first.
+    nodes: Vec<Node>,
+    /// Triangles in leaf order: a triangle's place here is its slot.
+    tris: Vec<Tri>,
+    corners: Vec<[DVec3; 3]>,
+    /// Which of the triangles given to [`Bvh::new`] sits in each slot.
+    faces: Vec<u32>,
+    /// Largest coordinate, for round-off allowances.
+    magnitude: f64,
+}
+
+impl Bvh {
+    /// The tree over some triangles, all coordinates finite.
+    pub fn new(triangles: &[[DVec3; 3]]) -> Self {
+        let bounds = Aabb::of(triangles.iter().flatten().copied());
+        let magnitude =
+            triangles.iter().flatten().fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
+        let mut bvh = Self { nodes: vec![], tris: vec![], corners: vec![], faces: vec![], magnitude };
+        bvh.lay_out(&shape(triangles, &bounds), triangles);
+        bvh.fit();
+        bvh
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.tris.len()
+    }
+
+    /// Whether there is nothing to query.
+    pub fn is_empty(&self) -> bool {
+        self.tris.is_empty()
+    }
+
+    /// The box round all triangles.
+    pub fn bounds(&self) -> Aabb {
+        self.nodes.first().map_or(Aabb::EMPTY, |n| n.bounds)
+    }
+
+    /// Copies the shape of `from` parents first, and the triangles in the order of the leaves.
+    fn lay_out(&mut self, from: &obvhs::bvh2::Bvh2, triangles: &[[DVec3; 3]]) {
+        if triangles.is_empty() {
+            return;
+        }
+        let blank = Node { bounds: Aabb::EMPTY, first: 0, count: 0 };
+        self.nodes.push(blank);
+        let mut open = vec![(0u32, 0usize)];
+        while let Some((source, place)) = open.pop() {
+            let node = from.nodes[source as usize];
+            if node.is_leaf() {
+                let first = self.tris.len() as u32;
+                for slot in node.first_index..node.first_index + node.prim_count {
+                    let face = from.primitive_indices[slot as usize];
+                    let corners = triangles[face as usize];
+                    self.tris.push(Tri::new(corners));
+                    self.corners.push(corners);
+                    self.faces.push(face);
+                }
+                self.nodes[place] = Node { first, count: node.prim_count, ..blank };
+            } else {
+                let first = self.nodes.len();
+                self.nodes.extend([blank, blank]);
+                self.nodes[place].first = first as u32;
+                open.push((node.first_index + 1, first + 1));
+                open.push((node.first_index, first));
+            }
+        }
+    }
+
+    /// Boxes from the leaves up.
+    fn fit(&mut self) {
+        for i in (0..self.nodes.len()).rev() {
+            let Node { first, count, .. } = self.nodes[i];
+            let (first, count) = (first as usize, count as usize);
+            self.nodes[i].bounds = if count > 0 {
+                Aabb::of(self.corners[first..first + count].iter().flatten().copied())
+            } else {
+                self.nodes[first].bounds.hull(self.nodes[first + 1].bounds)
+            };
+        }
+    }
+
+    /// What a computed distance at `p` may be off by.
+    fn slack(&self, p: DVec3) -> f64 {
+        1e-13 * (self.magnitude + p.abs().max_element())
+    }
+}
+
+/// The tree's shape, from `f32` triangles in a unit box.
+fn shape(triangles: &[[DVec3; 3]], bounds: &Aabb) -> obvhs::bvh2::Bvh2 {
+    if triangles.is_empty() {
+        return obvhs::bvh2::Bvh2::default();
+    }
+    let scale = 1.0 / bounds.size().max_element().max(f64::MIN_POSITIVE);
+    let unit = |p: DVec3| ((p - bounds.centre()) * scale).as_vec3a();
+    let small: Vec<_> = triangles
+        .iter()
+        .map(|t| Triangle { v0: unit(t[0]), v1: unit(t[1]), v2: unit(t[2]) })
+        .collect();
+    build_bvh2_from_tris(&small, BvhBuildParams::medium_build(), &mut Default::default())
+}

@@ -27,6 +27,9 @@ pub trait Morph: Send + Sync {
     fn domain(&self) -> Aabb;
 }
 
+#[cfg(test)]
+mod tests;
+
 /// Checks a plan and makes it a morph.
 ///
 /// # Errors

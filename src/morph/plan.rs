@@ -142,8 +142,6 @@ pub struct Plan {
     pub frames: Frames,
     /// Parameters of [`Inner::SpaceTime`].
     pub space_time: SpaceTime,
-    /// Step of the lattice on which automatic parameters are measured, mm.
-    pub probe: f64,
 }
 
 /// What keeps a plan from being carried out.

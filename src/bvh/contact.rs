@@ -1,0 +1,71 @@
+use glam::DVec3;
+
+/// Whether two flat convex polygons (triangles, or segments of two points) are separated by more
+/// than `slack` mm. Errs on the side of `false`: what touches or overlaps is never called apart.
+///
+/// Separating axes: both normals, the sides' normals within each plane, and all products of a side
+/// of one with a side of the other.
+pub fn apart(a: &[DVec3], b: &[DVec3], slack: f64) -> bool {
+    let (na, nb) = (normal(a), normal(b));
+    let gap = |axis: DVec3| gap(a, b, axis) > slack;
+    if gap(na) || gap(nb) {
+        return true;
+    }
+    let within = |side: DVec3, n: DVec3| side.cross(n);
+    sides(a).any(|s| gap(within(s, na)))
+        || sides(b).any(|s| gap(within(s, nb)))
+        || sides(a).any(|s| sides(b).any(|t| gap(s.cross(t))))
+}
+
+fn sides(p: &[DVec3]) -> impl Iterator<Item = DVec3> {
+    (0..p.len()).map(move |i| (p[(i + 1) % p.len()] - p[i]).normalize_or_zero())
+}
+
+/// Unit normal of a flat polygon (Newell), zero without area.
+fn normal(p: &[DVec3]) -> DVec3 {
+    let Some(&o) = p.first() else { return DVec3::ZERO };
+    (1..p.len())
+        .map(|i| (p[i] - o).cross(p[(i + 1) % p.len()] - o))
+        .sum::<DVec3>()
+        .normalize_or_zero()
+}
+
+/// Distance between the shadows on an axis; negative when they overlap or the axis says nothing.
+fn gap(a: &[DVec3], b: &[DVec3], axis: DVec3) -> f64 {
+    // sides nearly parallel give a direction of round-off only
+    let length = axis.length();
+    if !(length > 1e-9) {
+        return f64::NEG_INFINITY;
+    }
+    let shadow = |p: &[DVec3]| {
+        p.iter().map(|p| p.dot(axis)).fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
+            (lo.min(x), hi.max(x))
+        })
+    };
+    let ((alo, ahi), (blo, bhi)) = (shadow(a), shadow(b));
+    (alo - bhi).max(blo - ahi) / length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::apart;
+    use glam::dvec3;
+
+    #[test]
+    fn crossing_touching_and_separate_triangles() {
+        let flat = [dvec3(0.0, 0.0, 0.0), dvec3(4.0, 0.0, 0.0), dvec3(0.0, 4.0, 0.0)];
+        let through = [dvec3(1.0, 1.0, -1.0), dvec3(1.0, 1.0, 1.0), dvec3(9.0, 9.0, 0.0)];
+        let standing = [dvec3(1.0, 1.0, 0.0), dvec3(2.0, 1.0, 0.0), dvec3(1.0, 1.0, 3.0)];
+        let above = standing.map(|p| p + dvec3(0.0, 0.0, 0.01));
+        let beside = flat.map(|p| p + dvec3(3.0, 3.0, 0.0));
+        let overlapping = flat.map(|p| p + dvec3(1.0, 1.0, 0.0));
+        assert!(!apart(&flat, &through, 0.0));
+        assert!(!apart(&flat, &standing, 1e-9));
+        assert!(apart(&flat, &above, 0.005));
+        assert!(!apart(&flat, &above, 0.02));
+        assert!(apart(&flat, &beside, 0.1));
+        assert!(!apart(&flat, &overlapping, 1e-9));
+        assert!(!apart(&flat, &[dvec3(1.0, 1.0, -1.0), dvec3(1.0, 1.0, 1.0)], 0.0));
+        assert!(apart(&flat, &[dvec3(3.0, 3.0, -1.0), dvec3(3.0, 3.0, 1.0)], 0.1));
+    }
+}

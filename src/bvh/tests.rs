@@ -1,0 +1,161 @@
+use super::{Bvh, Winding};
+use glam::{DVec3, dvec3};
+use proptest::prelude::*;
+use std::f64::consts::TAU;
+
+/// A ball of radius 1 with bumps of height `bump`, `n` bands by `2 n` sectors.
+fn ball(n: u32, bump: f64) -> Vec<[DVec3; 3]> {
+    let at = |i: u32, j: u32| {
+        let (s, c) = (f64::from(i % (2 * n)) / f64::from(2 * n) * TAU).sin_cos();
+        let (z, r) = if j == 0 || j == n {
+            (if j == 0 { -1.0 } else { 1.0 }, 0.0)
+        } else {
+            let (a, b) = ((f64::from(j) / f64::from(n) - 0.5) * TAU / 2.0).sin_cos();
+            (a, b)
+        };
+        let p = dvec3(c * r, s * r, z);
+        p * (1.0 + bump * (9.0 * p.x).sin() * (7.0 * p.y).cos() * (8.0 * p.z).sin())
+    };
+    let mut out = vec![];
+    for i in 0..2 * n {
+        for j in 0..n {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            if j > 0 {
+                out.push([a, b, c]);
+            }
+            if j + 1 < n {
+                out.push([a, c, d]);
+            }
+        }
+    }
+    out
+}
+
+fn brute(tris: &[[DVec3; 3]], p: DVec3) -> f64 {
+    let far = |t: &[DVec3; 3]| super::triangle::Tri::new(*t).distance2(p.x, p.y, p.z);
+    tris.iter().map(far).fold(f64::INFINITY, f64::min).sqrt()
+}
+
+/// Points of an 8³ cube in Morton order.
+fn cube(origin: DVec3, step: f64) -> Vec<DVec3> {
+    let bit = |i: u32, axis: u32| (0..3).map(|b| (i >> (3 * b + axis) & 1) << b).sum::<u32>();
+    (0..512u32)
+        .map(|i| origin + step * DVec3::from([0, 1, 2].map(|a| f64::from(bit(i, a)))))
+        .collect()
+}
+
+fn points(n: usize, half: f64) -> impl Strategy<Value = Vec<DVec3>> {
+    let x = move || -half..half;
+    prop::collection::vec((x(), x(), x()).prop_map(|(x, y, z)| dvec3(x, y, z)), n)
+}
+
+#[test]
+fn nothing_is_infinitely_far() {
+    let none = Bvh::new(&[]);
+    assert!(none.nearest(DVec3::ZERO).is_none());
+    assert_eq!(none.distance(DVec3::ZERO), f64::INFINITY);
+    assert_eq!(none.nearest_all(&[DVec3::ZERO])[0].distance2, f64::INFINITY);
+    assert_eq!(Winding::new(&[]).number(DVec3::ZERO, 0.5), 0.0);
+}
+
+#[test]
+fn one_triangle_is_a_leaf_at_the_root() {
+    let one = Bvh::new(&[[DVec3::ZERO, DVec3::X, DVec3::Y]]);
+    assert!((one.distance(dvec3(0.2, 0.2, 3.0)) - 3.0).abs() < 1e-14);
+}
+
+#[test]
+fn coinciding_triangles_are_all_kept() {
+    let tris = vec![[DVec3::ZERO, DVec3::X, DVec3::Y]; 1000];
+    let bvh = Bvh::new(&tris);
+    assert_eq!(bvh.len(), 1000);
+    assert_eq!(bvh.overlapping(&bvh.bounds(), 0.0).len(), 1000);
+    assert!((bvh.distance(dvec3(0.2, 0.2, -2.0)) - 2.0).abs() < 1e-14);
+}
+
+#[test]
+fn points_that_are_not_finite_have_no_nearest() {
+    let bvh = Bvh::new(&ball(6, 0.0));
+    let bad = [DVec3::NAN, DVec3::INFINITY, dvec3(f64::NAN, 0.0, 0.0)];
+    assert!(bad.iter().all(|&p| bvh.nearest(p).is_none_or(|n| n.distance.is_infinite())));
+    assert_eq!(bvh.nearest_all(&bad).len(), 3);
+}
+
+#[test]
+fn a_lattice_of_points_agrees_with_single_queries() {
+    let tris = ball(40, 0.1);
+    let bvh = Bvh::new(&tris);
+    for (origin, step) in
+        [(DVec3::splat(0.5), 0.02), (dvec3(0.9, -0.1, 0.0), 0.01), (DVec3::splat(-0.4), 0.1)]
+    {
+        let at = cube(origin, step);
+        for (p, hit) in at.iter().zip(bvh.nearest_all(&at)) {
+            assert_eq!(hit.distance2.sqrt(), bvh.distance(*p));
+            assert_eq!(hit.distance2.sqrt(), brute(&tris, *p));
+            let near = bvh.nearest_of(*p, &hit).unwrap();
+            assert!((near.point.distance(*p) - near.distance).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn the_winding_number_is_right_far_near_and_inside() {
+    let winding = Winding::new(&ball(30, 0.15));
+    let mut worst: f64 = 0.0;
+    for p in cube(DVec3::splat(-1.4), 0.4) {
+        worst = worst.max((winding.number(p, 9.0) - winding.exact(p)).abs());
+    }
+    assert!(worst < 0.004, "off by {worst}");
+}
+
+#[test]
+fn moments_of_the_third_order_fall_with_the_fourth_power() {
+    // seen from afar the whole set is one dipole; an open half ball has all moments
+    let half: Vec<_> =
+        ball(24, 0.1).into_iter().filter(|t| t.iter().all(|p| p.z + 0.3 * p.x > 0.0)).collect();
+    let winding = Winding::new(&half);
+    let d = winding.dipoles[0];
+    let error = |r: f64| {
+        [dvec3(1.0, 2.0, 3.0), dvec3(-2.0, 1.0, 0.5), dvec3(0.1, -1.0, -1.0)]
+            .map(|dir| {
+                let q = d.centre + dir.normalize() * r;
+                let far = d.solid_angle(d.centre - q, r * r) / (2.0 * TAU);
+                (far - winding.exact(q)).abs()
+            })
+            .into_iter()
+            .fold(0.0, f64::max)
+    };
+    // the first term left out falls with r^-5
+    let order = (error(8.0) / error(16.0)).log2();
+    assert!(order > 4.5, "order {order}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn nearest_is_the_minimum_over_all(at in points(40, 2.0), bump in 0.0..0.3) {
+        let tris = ball(12, bump);
+        let bvh = Bvh::new(&tris);
+        let all = bvh.nearest_all(&at);
+        for (&p, hit) in at.iter().zip(all) {
+            let near = bvh.nearest(p).unwrap();
+            prop_assert_eq!(near.distance, brute(&tris, p));
+            prop_assert_eq!(near.distance, hit.distance2.sqrt());
+            prop_assert!((near.point.distance(p) - near.distance).abs() < 1e-12);
+            prop_assert!(bvh.nearest_within(p, near.distance * 1.01 + 1e-9).is_some());
+            prop_assert!(bvh.nearest_within(p, near.distance * 0.99).is_none());
+        }
+    }
+
+    #[test]
+    fn winding_near_the_level_is_as_good_as_exact(at in points(60, 1.5), cut in -0.5..0.9) {
+        let open: Vec<_> = ball(16, 0.1).into_iter().filter(|t| t[0].z < cut).collect();
+        let winding = Winding::new(&open);
+        for p in at {
+            let (fast, exact) = (winding.number(p, 0.5), winding.exact(p));
+            prop_assert!((fast - exact).abs() < 0.02);
+            prop_assert!((fast >= 0.5) == (exact >= 0.5), "{fast} {exact}");
+        }
+    }
+}
