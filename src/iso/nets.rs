@@ -90,7 +90,11 @@ impl Net {
     ) -> Self {
         // an infinity beside a crossing would make its position NaN
         for v in &mut chunk.samples {
-            *v = if v.is_nan() { 1e30 } else { v.clamp(-1e30, 1e30) };
+            *v = if v.is_nan() {
+                1e30
+            } else {
+                v.clamp(-1e30, 1e30)
+            };
         }
         surface_nets(&chunk.samples, &Shape {}, [0; 3], [9; 3], buffer);
         let mut net = Self {
