@@ -1,0 +1,106 @@
+//! The shadow on the ground: how much of the studio's light reaches the floor round the feet.
+
+use super::light::{Lights, Spot};
+use super::scene::Scene;
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+/// Cells along each side of the floor.
+const CELLS: usize = 256;
+/// How far the floor reaches beyond the mesh, in lengths of its longest side.
+const REACH: f32 = 0.9;
+/// Width of the blur a shadow gets, for each unit of distance to what casts it: about half the
+/// angle between neighbouring lights. Less, and each light's shadow shows its edge.
+const BLUR: f32 = 0.30;
+
+/// Light on a square of floor under the mesh; 1 is all of it.
+pub(super) struct Ground {
+    /// Height of the floor.
+    pub z: f32,
+    low: Vec2,
+    /// Cells a unit.
+    scale: f32,
+    light: Vec<f32>,
+}
+
+impl Ground {
+    pub fn new(scene: &Scene, lights: &Lights) -> Self {
+        let (min, max) = (scene.min, scene.max);
+        let middle = (min + max).truncate() * 0.5;
+        let half = (max - min).truncate().max_element() * 0.5 + (max - min).max_element() * REACH;
+        let (low, scale) = (middle - half, CELLS as f32 / (2.0 * half));
+        let rows: Vec<Vec<[f32; 2]>> = (0..CELLS)
+            .into_par_iter()
+            .map(|y| {
+                let spot = |x| {
+                    let cell = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+                    Spot {
+                        at: (low + cell / scale).extend(min.z),
+                        normal: Vec3::Z,
+                    }
+                };
+                lights.on_floor(&(0..CELLS).map(spot).collect::<Vec<_>>())
+            })
+            .collect();
+        let (raw, caster): (Vec<f32>, Vec<f32>) = rows
+            .into_iter()
+            .flatten()
+            .map(|[light, caster]| (light, caster))
+            .unzip();
+        // The width of the blur is itself smoothed, or its jumps would show.
+        let width = blurred(&caster, |_| 4.0);
+        let mut light = raw;
+        for _ in 0..2 {
+            light = blurred(&light, |i| width[i] * BLUR * scale);
+        }
+        Self {
+            z: min.z,
+            low,
+            scale,
+            light,
+        }
+    }
+
+    /// The light at a place of the floor, fading to 1 at the edge of the square.
+    pub fn light(&self, at: Vec2) -> f32 {
+        let place = (at - self.low) * self.scale - 0.5;
+        let last = (CELLS - 2) as f32;
+        let corner = place.floor().clamp(Vec2::ZERO, Vec2::splat(last));
+        let part = (place - corner).clamp(Vec2::ZERO, Vec2::ONE);
+        let first = corner.y as usize * CELLS + corner.x as usize;
+        let mix = |i: usize| self.light[i] + (self.light[i + 1] - self.light[i]) * part.x;
+        let light = mix(first) + (mix(first + CELLS) - mix(first)) * part.y;
+        let from_middle = (place / (CELLS as f32 * 0.5) - 1.0).length();
+        let fade = ((1.0 - from_middle) / 0.6).clamp(0.0, 1.0);
+        1.0 - (1.0 - light) * fade * fade * (3.0 - 2.0 * fade)
+    }
+}
+
+/// The mean over a square round each cell, of the given half width in cells.
+fn blurred(values: &[f32], half: impl Fn(usize) -> f32 + Sync) -> Vec<f32> {
+    // Sums over all cells before a row and a column; f64, or differences of them lose the point.
+    let side = CELLS + 1;
+    let mut sums = vec![0.0_f64; side * side];
+    for y in 0..CELLS {
+        for x in 0..CELLS {
+            let i = y * side + x;
+            sums[i + side + 1] =
+                f64::from(values[y * CELLS + x]) + sums[i + side] + sums[i + 1] - sums[i];
+        }
+    }
+    let mean = |i: usize| {
+        // Between two whole widths the means are mixed, so that widths may vary smoothly.
+        let half = half(i).clamp(0.0, CELLS as f32 / 4.0);
+        let square = |half: usize| {
+            let (x, y) = (i % CELLS, i / CELLS);
+            let (left, top) = (x.saturating_sub(half), y.saturating_sub(half));
+            let (right, bottom) = ((x + half + 1).min(CELLS), (y + half + 1).min(CELLS));
+            let at = |x: usize, y: usize| sums[y * side + x];
+            let sum = at(right, bottom) - at(left, bottom) - at(right, top) + at(left, top);
+            sum as f32 / ((right - left) * (bottom - top)) as f32
+        };
+        let (narrow, wide) = (square(half as usize), square(half as usize + 1));
+        narrow + (wide - narrow) * half.fract()
+    };
+    (0..values.len()).into_par_iter().map(mean).collect()
+}

@@ -1,0 +1,118 @@
+//! Pixels, and their way into a file.
+
+use super::{LARGEST, PictureError};
+use std::{fs, io, path::Path};
+
+/// An sRGB picture, rows from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    width: u32,
+    height: u32,
+    pixels: Vec<[u8; 3]>,
+}
+
+impl Image {
+    /// A picture of one colour.
+    ///
+    /// # Errors
+    /// [`PictureError::Size`] when a side is 0 or over [`LARGEST`].
+    pub fn filled(width: u32, height: u32, color: [u8; 3]) -> Result<Self, PictureError> {
+        if !(1..=LARGEST).contains(&width) || !(1..=LARGEST).contains(&height) {
+            return Err(PictureError::Size { width, height });
+        }
+        Ok(Self {
+            width,
+            height,
+            pixels: vec![color; width as usize * height as usize],
+        })
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All pixels, row by row from the top.
+    pub fn pixels(&self) -> &[[u8; 3]] {
+        &self.pixels
+    }
+
+    /// All pixels, row by row from the top.
+    pub fn pixels_mut(&mut self) -> &mut [[u8; 3]] {
+        &mut self.pixels
+    }
+
+    /// The pixel in that column and row; `None` outside.
+    pub fn get(&self, x: u32, y: u32) -> Option<[u8; 3]> {
+        let index = y as usize * self.width as usize + x as usize;
+        (x < self.width && y < self.height).then(|| self.pixels[index])
+    }
+
+    /// Puts another picture on top, its corner at (x, y); what sticks out is cut off.
+    pub fn paste(&mut self, other: &Image, x: u32, y: u32) {
+        let columns = other.width.min(self.width.saturating_sub(x)) as usize;
+        let rows = other.height.min(self.height.saturating_sub(y)) as usize;
+        for row in 0..rows {
+            let from = row * other.width as usize;
+            let to = (y as usize + row) * self.width as usize + x as usize;
+            self.pixels[to..to + columns].copy_from_slice(&other.pixels[from..from + columns]);
+        }
+    }
+
+    /// The bytes of a PNG file.
+    ///
+    /// # Errors
+    /// What the encoder says.
+    pub fn to_png(&self) -> io::Result<Vec<u8>> {
+        let mut bytes = io::Cursor::new(Vec::new());
+        let (flat, format) = (self.pixels.as_flattened(), ::image::ImageFormat::Png);
+        let color = ::image::ExtendedColorType::Rgb8;
+        ::image::write_buffer_with_format(&mut bytes, flat, self.width, self.height, color, format)
+            .map_err(io::Error::other)?;
+        Ok(bytes.into_inner())
+    }
+}
+
+/// Writes a PNG file. It is written beside its place and renamed into it, so that an
+/// interrupted run leaves no half file.
+///
+/// # Errors
+/// [`PictureError::Exists`] without `force` when the file is there, [`PictureError::Write`].
+pub fn save_png(path: &Path, image: &Image, force: bool) -> Result<(), PictureError> {
+    let exists = || PictureError::Exists(path.to_owned());
+    if !force && path.symlink_metadata().is_ok() {
+        return Err(exists());
+    }
+    write(path, image, force).map_err(|source| match source.kind() {
+        io::ErrorKind::AlreadyExists if !force => exists(),
+        _ => PictureError::Write {
+            path: path.to_owned(),
+            source,
+        },
+    })
+}
+
+fn write(path: &Path, image: &Image, force: bool) -> io::Result<()> {
+    let bytes = image.to_png()?;
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    // Readable by others, as any file a program makes; the umask still has its say.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder.tempfile_in(folder)?;
+    fs::write(file.path(), bytes)?;
+    if force {
+        file.persist(path)
+    } else {
+        file.persist_noclobber(path)
+    }?;
+    Ok(())
+}

@@ -1,0 +1,207 @@
+//! From samples to pixels: colour, light, the shadow on the ground.
+
+use super::camera::{Camera, Seen};
+use super::ground::Ground;
+use super::light::{Lights, Spot};
+use super::raster::{Band, NONE, Raster, centre};
+use super::scene::Scene;
+use super::{Image, Style};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Samples along each side of a pixel.
+const SAMPLES: usize = 3;
+/// Samples of a pixel in all.
+const ALL: f32 = (SAMPLES * SAMPLES) as f32;
+/// Rows of pixels drawn in one go.
+const ROWS: usize = 16;
+/// Samples of one pixel whose normals differ less than this (cosine) are lit together.
+const ALIKE: f32 = 0.95;
+/// How far the colour of a face seen from behind goes over to [`WARM`].
+const TINT: f32 = 0.55;
+/// Linear colour that faces seen from behind tend to.
+const WARM: Vec3 = Vec3::new(0.75, 0.16, 0.06);
+/// How dark a shadow on the ground may get: 1 is black.
+const SHADOW: f32 = 0.85;
+
+/// The samples of one pixel that lie on one piece of surface.
+#[derive(Clone, Copy)]
+struct Patch {
+    pixel: usize,
+    count: f32,
+    at: Vec3,
+    normal: Vec3,
+    behind: bool,
+}
+
+pub(super) fn draw(
+    image: &mut Image,
+    scene: &Scene,
+    camera: &Camera,
+    lights: &Lights,
+    style: &Style,
+) {
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let samples = (width * SAMPLES, height * SAMPLES);
+    let raster = Raster::new(scene, camera, SAMPLES as f32, samples.1, ROWS * SAMPLES);
+    let ground = Ground::new(scene, lights);
+    let painter = Painter {
+        scene,
+        camera,
+        lights,
+        ground,
+        raster,
+        style,
+    };
+    let bands = image.pixels_mut().par_chunks_mut(width * ROWS).enumerate();
+    bands.for_each(|(index, pixels)| {
+        let band = painter.raster.band(index, samples.0, samples.1);
+        painter.paint(&band, pixels, index * ROWS);
+    });
+}
+
+struct Painter<'a> {
+    scene: &'a Scene,
+    camera: &'a Camera,
+    lights: &'a Lights,
+    ground: Ground,
+    raster: Raster<'a>,
+    style: &'a Style,
+}
+
+impl Painter<'_> {
+    fn paint(&self, band: &Band, pixels: &mut [[u8; 3]], top: usize) {
+        let width = band.width / SAMPLES;
+        let background = linear(self.style.background);
+        let mut patches = Vec::new();
+        let mut sums = vec![Vec3::ZERO; pixels.len()];
+        for (pixel, sum) in sums.iter_mut().enumerate() {
+            let (x, y) = (pixel % width, pixel / width);
+            let bare = self.gather(band, x, y, pixel, &mut patches);
+            if bare > 0.0 {
+                *sum = background * (self.floor(x, top + y) * bare / ALL);
+            }
+        }
+        let spots: Vec<Spot> = patches
+            .iter()
+            .map(|p| Spot {
+                at: p.at / p.count,
+                normal: p.normal,
+            })
+            .collect();
+        for (patch, light) in patches.iter().zip(self.lights.reach(&spots)) {
+            sums[patch.pixel] += self.color(patch, light) * (patch.count / ALL);
+        }
+        for (pixel, sum) in pixels.iter_mut().zip(sums) {
+            *pixel = encode(sum);
+        }
+    }
+
+    /// Collects what the samples of a pixel see; the number of samples that see nothing.
+    fn gather(
+        &self,
+        band: &Band,
+        x: usize,
+        y: usize,
+        pixel: usize,
+        patches: &mut Vec<Patch>,
+    ) -> f32 {
+        let first = patches.len();
+        let mut misses = 0.0;
+        for k in 0..SAMPLES * SAMPLES {
+            let (sx, sy) = (x * SAMPLES + k % SAMPLES, y * SAMPLES + k / SAMPLES);
+            let at = sy * band.width + sx;
+            if band.face[at] == NONE {
+                misses += 1.0;
+                continue;
+            }
+            let seen = self.sample(band.face[at], sx, band.top + sy, band.near[at], pixel);
+            let alike =
+                |p: &&mut Patch| p.behind == seen.behind && p.normal.dot(seen.normal) > ALIKE;
+            match patches[first..].iter_mut().find(alike) {
+                Some(patch) => {
+                    patch.at += seen.at;
+                    patch.count += 1.0;
+                }
+                None => patches.push(seen),
+            }
+        }
+        misses
+    }
+
+    fn sample(&self, face: u32, x: usize, y: usize, near: f32, pixel: usize) -> Patch {
+        let i = face as usize;
+        let place = Seen {
+            at: centre(x, y, SAMPLES as f32),
+            near,
+        };
+        let at = self.camera.unsee(place);
+        let sight = self.camera.sight(at);
+        let behind = self.scene.flat[i].dot(sight) < 0.0;
+        let [u, v, w] = self.raster.shares(face, x, y);
+        let [a, b, c] = self.scene.smooth[i];
+        let mut normal = (a * u + b * v + c * w).normalize_or(self.scene.flat[i]);
+        if behind {
+            normal = -normal;
+        }
+        // Bent back where it looks away: what is seen faces the eye.
+        let away = normal.dot(sight).min(0.0);
+        normal = (normal - sight * away).normalize_or(sight);
+        Patch {
+            pixel,
+            count: 1.0,
+            at,
+            normal,
+            behind,
+        }
+    }
+
+    fn color(&self, patch: &Patch, light: Vec3) -> Vec3 {
+        let own = linear(self.style.color);
+        let base = if patch.behind {
+            own.lerp(WARM, TINT)
+        } else {
+            own
+        };
+        let sight = self.camera.sight(patch.at / patch.count);
+        let graze = (1.0 - patch.normal.dot(sight).clamp(0.0, 1.0)).powi(4);
+        base * light + light * (0.10 * graze)
+    }
+
+    /// The light on the floor under a pixel; 1 where the floor cannot be seen.
+    fn floor(&self, x: usize, y: usize) -> f32 {
+        let (origin, direction) = self.camera.ray(centre(x, y, 1.0));
+        if direction.z > -1e-3 {
+            return 1.0;
+        }
+        let at = origin + direction * ((self.ground.z - origin.z) / direction.z);
+        1.0 - (1.0 - self.ground.light(at.truncate())) * SHADOW
+    }
+}
+
+/// From sRGB to linear light.
+fn linear(color: [u8; 3]) -> Vec3 {
+    let channel = |c: u8| {
+        let c = f32::from(c) / 255.0;
+        if c <= 0.04045 {
+            c / 12.92
+        } else {
+            ((c + 0.055) / 1.055).powf(2.4)
+        }
+    };
+    Vec3::from(color.map(channel))
+}
+
+/// From linear light to sRGB.
+fn encode(light: Vec3) -> [u8; 3] {
+    let channel = |c: f32| {
+        let c = c.clamp(0.0, 1.0);
+        let c = if c <= 0.003_130_8 {
+            c * 12.92
+        } else {
+            1.055 * c.powf(1.0 / 2.4) - 0.055
+        };
+        (c * 255.0).round() as u8
+    };
+    light.to_array().map(channel)
+}
