@@ -15,17 +15,20 @@
 mod align;
 mod between;
 mod ellipsoid;
+mod gauge;
 mod mean;
 mod shape;
 
 pub use align::align;
 pub use between::Between;
+pub use gauge::Gauge;
 pub use mean::{ambiguous, average};
 pub use shape::{Form, Shape};
 
 use crate::num::{Aabb, Interval};
 use crate::warp::{Barr, Deform, WarpError};
 use glam::{DMat3, DQuat, DVec3};
+use shape::Bent;
 
 /// Why an element is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -184,7 +187,7 @@ impl Element {
     pub fn distance_rounded(&self, p: DVec3, round: f64) -> f64 {
         let v = self.rotation.conjugate() * (p - self.centre);
         self.shape
-            .deformed_distance(self.half, self.barr().as_ref(), round, v)
+            .deformed_distance(self.half, self.bent().as_ref(), round, v)
     }
 
     /// An enclosure of the distance over a box.
@@ -218,6 +221,15 @@ impl Element {
 
     fn barr(&self) -> Option<Barr> {
         (!self.deform.is_none()).then(|| Barr::new(&self.deform, self.half))
+    }
+
+    fn bent(&self) -> Option<Bent> {
+        self.barr().map(|b| Bent::new(b, self.half))
+    }
+
+    /// Ready for many distance queries, its edges rounded by `round` mm.
+    pub fn gauge(&self, round: f64) -> Gauge {
+        Gauge::new(self, round)
     }
 
     /// The map that takes this element onto another.

@@ -1,6 +1,6 @@
 use super::{ElementError, ellipsoid};
 use crate::num::Aabb;
-use crate::warp::Barr;
+use crate::warp::{Barr, Near};
 use glam::{DVec2, DVec3};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -67,6 +67,24 @@ impl Form for Mirrored {
     }
 }
 
+/// A deformation made ready for distances.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bent {
+    pub barr: Barr,
+    pub near: Near,
+    pub bounds: Aabb,
+}
+
+impl Bent {
+    pub fn new(barr: Barr, half: DVec3) -> Self {
+        Self {
+            barr,
+            near: barr.near(half),
+            bounds: barr.bounds(half),
+        }
+    }
+}
+
 impl Shape {
     /// A prism over a convex polygon in the unit square, counter-clockwise.
     pub fn prism(polygon: &[DVec2]) -> Result<Self, ElementError> {
@@ -103,25 +121,24 @@ impl Shape {
     }
 
     /// Signed distance at `v` (mm, element axes) to the shape of half sizes `half`, its edges
-    /// rounded by `round`, deformed by `barr`.
+    /// rounded by `round`, deformed.
     pub(super) fn deformed_distance(
         &self,
         half: DVec3,
-        barr: Option<&Barr>,
+        bent: Option<&Bent>,
         round: f64,
         v: DVec3,
     ) -> f64 {
-        let Some(barr) = barr else {
+        let Some(Bent { barr, near, bounds }) = bent else {
             return self.rounded_distance(half, round, v);
         };
-        let near = barr.near(half);
         let u = barr.pull(v);
         let d = self.rounded_distance(half, round, u);
         let outside = Aabb::around(DVec3::ZERO, half).distance(u);
         let d = if outside > 0.0 { d.max(outside) } else { d };
         let d = d.min(near.cap) / near.stretch;
         // far away the box round the body knows more than the cut-off distance
-        let far = barr.bounds(half).distance(v);
+        let far = bounds.distance(v);
         if far > 0.0 { d.max(far) } else { d }
     }
 

@@ -3,8 +3,10 @@
 //! The sign is told once: **f < 0 inside, f > 0 outside, f = 0 on the surface**; a signed
 //! distance field measures in millimetres.
 
-pub mod sampled;
+pub mod csg;
 pub mod sample;
+pub mod sampled;
+pub mod solid;
 
 use crate::num::{Aabb, Interval};
 use glam::DVec3;

@@ -4,5 +4,6 @@
 mod barr;
 mod deform;
 
+pub(crate) use barr::Near;
 pub use barr::{Ball, Barr};
 pub use deform::{Deform, WarpError};

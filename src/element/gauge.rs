@@ -1,0 +1,50 @@
+use super::shape::Bent;
+use super::{Element, Shape};
+use crate::num::{Aabb, Interval};
+use glam::{DMat3, DVec3};
+
+/// An element made ready for many distance queries: what [`Element::distance_rounded`] works out
+/// anew each time is worked out once.
+#[derive(Clone, Debug)]
+pub struct Gauge {
+    shape: Shape,
+    centre: DVec3,
+    into: DMat3,
+    half: DVec3,
+    bent: Option<Bent>,
+    round: f64,
+    bounds: Aabb,
+}
+
+impl Gauge {
+    /// Ready, with the element's edges rounded by `round` mm and its size unchanged.
+    pub fn new(element: &Element, round: f64) -> Self {
+        Self {
+            shape: element.shape.clone(),
+            centre: element.centre,
+            into: DMat3::from_quat(element.rotation).transpose(),
+            half: element.half,
+            bent: element.bent(),
+            round,
+            bounds: element.bounds(),
+        }
+    }
+
+    /// Signed distance, as [`Element::distance_rounded`] gives it.
+    pub fn distance(&self, p: DVec3) -> f64 {
+        let v = self.into * (p - self.centre);
+        self.shape
+            .deformed_distance(self.half, self.bent.as_ref(), self.round, v)
+    }
+
+    /// An enclosure of the distance over a box.
+    pub fn bound(&self, b: &Aabb) -> Interval {
+        let d = self.distance(b.centre());
+        Interval::ball(d, b.radius()).widen(1e-12 * (d.abs() + b.radius()))
+    }
+
+    /// A box round the element.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+}
