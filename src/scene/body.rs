@@ -3,7 +3,8 @@
 use super::elements;
 use super::place::Similarity;
 use crate::element::{Element, tessellate};
-use crate::field::solid::{Assembly, Operation, SolidPart};
+use crate::field::csg::Join;
+use crate::field::solid::Part as SolidPart;
 use crate::mesh::TriMesh;
 use crate::num::Aabb;
 use crate::recipe::{Mirror, Op, Problem, Solid};
@@ -25,13 +26,13 @@ impl Body {
         for (i, part) in solid.parts.iter().enumerate() {
             let at = if at.is_empty() { format!("parts[{i}]") } else { format!("{at}.parts[{i}]") };
             let (element, round) = elements::part(part, &at)?;
-            let operation = match part.op {
-                Op::Add => Operation::Add,
-                Op::Cut => Operation::Cut,
-                Op::Blend => Operation::Blend(part.blend.unwrap_or(0.0)),
+            let join = match part.op {
+                Op::Add => Join::Add,
+                Op::Cut => Join::Cut,
+                Op::Blend => Join::Blend(part.blend.unwrap_or(0.0)),
             };
             for element in images(element, part.mirror) {
-                parts.push(SolidPart { element, round, operation });
+                parts.push(SolidPart { element, round, join });
             }
         }
         Ok(Self::Solid(parts))
@@ -69,7 +70,7 @@ impl Body {
             Self::Mesh(mesh) => mesh.clone(),
             Self::Solid(parts) => {
                 let mut all = TriMesh::default();
-                for p in parts.iter().filter(|p| p.operation != Operation::Cut) {
+                for p in parts.iter().filter(|p| p.join != Join::Cut) {
                     all.append(&tessellate(&p.element, p.round, CHORD));
                 }
                 all
@@ -99,7 +100,7 @@ fn moved_part(mut p: SolidPart, by: &Similarity) -> SolidPart {
     p.element.rotation = (by.turn * p.element.rotation).normalize();
     p.element.half *= by.scale;
     p.round *= by.scale;
-    if let Operation::Blend(width) = &mut p.operation {
+    if let Join::Blend(width) = &mut p.join {
         *width *= by.scale;
     }
     p

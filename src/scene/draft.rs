@@ -1,6 +1,6 @@
 //! Shapes read and placed: enough to know how large the work will be.
 
-use super::live::{self, LiveShape, Placed};
+use super::live::{self, LiveShape, Placed, Stop};
 use super::variant::Variant;
 use super::{Scene, SceneError, mesh_element, plan};
 use crate::grid::Lattice;
@@ -111,7 +111,11 @@ impl Draft {
             let (name, bounds) = (shape.name.clone(), shape.bounds);
             notes.push(shape.note.clone());
             inputs.extend(shape.input.clone());
-            let (exact, found) = live::exact(shape, &recipe.shapes[&name], job)?;
+            let (exact, found) =
+                live::exact(shape, &recipe.shapes[&name], job).map_err(|stop| match stop {
+                    Stop::Problem(p) => locate(p),
+                    Stop::Cancelled(c) => c.into(),
+                })?;
             notes.extend(found);
             let (field, volume) = live::sampled(exact.clone(), step, job)?;
             shapes.push(LiveShape { name, field, exact, volume, bounds });

@@ -12,6 +12,7 @@ use crate::mesh::{Assume, Unit, Up, read};
 use crate::num::Aabb;
 use crate::recipe::{
     self, LengthUnit, PlainOr, Problem, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,
+    join,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -109,14 +110,36 @@ fn solid_file(path: &Path, at: &str) -> Result<(Body, Option<Input>, String), Pr
     Ok((body, Some(input), format!("{}, solid of {} parts", path.display(), solid.parts.len())))
 }
 
+/// What ends the making of a field.
+pub(super) enum Stop {
+    Problem(Problem),
+    Cancelled(Cancelled),
+}
+
+impl From<Problem> for Stop {
+    fn from(p: Problem) -> Self {
+        Self::Problem(p)
+    }
+}
+
+impl From<Cancelled> for Stop {
+    fn from(c: Cancelled) -> Self {
+        Self::Cancelled(c)
+    }
+}
+
 /// The field of a placed shape, and what was found on the way.
 pub(super) fn exact(
     placed: Placed,
     entry: &ShapeEntry,
     job: &dyn Job,
-) -> Result<(Shared, Vec<String>), Cancelled> {
+) -> Result<(Shared, Vec<String>), Stop> {
     match placed.body {
-        Body::Solid(parts) => Ok((Arc::new(Assembly::new(parts)), Vec::new())),
+        Body::Solid(parts) => {
+            let at = join("shapes", &placed.name);
+            let solid = Assembly::new(&parts).map_err(|e| Problem::new(at, e.to_string()))?;
+            Ok((Arc::new(solid), Vec::new()))
+        }
         Body::Mesh(mesh) => {
             let options = options(entry);
             let (field, report) = MeshField::new(&mesh, &options, job)?;
