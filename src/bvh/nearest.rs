@@ -26,7 +26,10 @@ fn distance2(b: &Aabb, p: DVec3) -> f64 {
 
 /// Squared distance between two boxes.
 fn gap2(a: &Aabb, b: &Aabb) -> f64 {
-    (a.min - b.max).max(b.min - a.max).max(DVec3::ZERO).length_squared()
+    (a.min - b.max)
+        .max(b.min - a.max)
+        .max(DVec3::ZERO)
+        .length_squared()
 }
 
 impl Bvh {
@@ -43,7 +46,9 @@ impl Bvh {
 
     /// Distance to the nearest point, infinite for an empty set.
     pub fn distance(&self, p: DVec3) -> f64 {
-        self.closest(p, f64::INFINITY, &mut Vec::with_capacity(64)).0.sqrt()
+        self.closest(p, f64::INFINITY, &mut Vec::with_capacity(64))
+            .0
+            .sqrt()
     }
 
     pub(super) fn describe(&self, p: DVec3, d2: f64, slot: u32) -> Nearest {
@@ -59,12 +64,7 @@ impl Bvh {
 
     /// Least squared distance up to `reach2`, and its slot (`u32::MAX` for none). The result is
     /// the minimum over all triangles exactly: pruning leaves room for round-off.
-    pub(super) fn closest(
-        &self,
-        p: DVec3,
-        reach2: f64,
-        stack: &mut Vec<(f64, u32)>,
-    ) -> (f64, u32) {
+    pub(super) fn closest(&self, p: DVec3, reach2: f64, stack: &mut Vec<(f64, u32)>) -> (f64, u32) {
         let slack = self.slack(p);
         let limit = |d2: f64| (d2.sqrt() + slack).powi(2);
         let (mut best, mut slot) = (reach2, u32::MAX);
@@ -85,8 +85,11 @@ impl Bvh {
             } else {
                 let a = distance2(&self.nodes[first as usize].bounds, p);
                 let b = distance2(&self.nodes[first as usize + 1].bounds, p);
-                let (near, far) =
-                    if a <= b { ((a, first), (b, first + 1)) } else { ((b, first + 1), (a, first)) };
+                let (near, far) = if a <= b {
+                    ((a, first), (b, first + 1))
+                } else {
+                    ((b, first + 1), (a, first))
+                };
                 if far.0 <= edge {
                     stack.push(far);
                 }
@@ -137,9 +140,7 @@ impl Bvh {
     pub fn overlapping(&self, b: &Aabb, reach: f64) -> Vec<u32> {
         let mut found = vec![];
         self.gather(b, reach, usize::MAX, &mut vec![], &mut found);
-        let near = |&s: &u32| {
-            gap2(&Aabb::of(self.corners[s as usize]), b) <= reach * reach
-        };
+        let near = |&s: &u32| gap2(&Aabb::of(self.corners[s as usize]), b) <= reach * reach;
         found.retain(near);
         for slot in &mut found {
             *slot = self.faces[*slot as usize];

@@ -33,7 +33,11 @@ impl Rim {
                 lengths[first] + lengths[first + 1]
             };
         }
-        Self { bvh, lengths, edges }
+        Self {
+            bvh,
+            lengths,
+            edges,
+        }
     }
 
     /// Length of all rims, mm.
@@ -49,7 +53,11 @@ impl Rim {
             stack.push(0u32);
         }
         while let Some(index) = stack.pop() {
-            let Node { bounds, first, count } = self.bvh.nodes[index as usize];
+            let Node {
+                bounds,
+                first,
+                count,
+            } = self.bvh.nodes[index as usize];
             let far = bounds.distance(centre) - radius;
             if far > 2.0 * bounds.radius() {
                 total += self.lengths[index as usize] / (far * far);

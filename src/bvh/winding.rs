@@ -58,7 +58,14 @@ impl Moments {
     fn at(centre: DVec3) -> Self {
         let (zero, none) = (DVec3::ZERO, DMat3::ZERO);
         let (second, third) = ([zero; 3], [none; 3]);
-        Self { area: 0.0, centre, radius: 0.0, first: zero, second, third }
+        Self {
+            area: 0.0,
+            centre,
+            radius: 0.0,
+            first: zero,
+            second,
+            third,
+        }
     }
 
     fn add_triangle(&mut self, corners: &[DVec3; 3]) {
@@ -89,7 +96,9 @@ impl Moments {
     }
 
     fn dipole(&self, bounds: &Aabb) -> Dipole {
-        let far = (self.centre - bounds.min).max(bounds.max - self.centre).length();
+        let far = (self.centre - bounds.min)
+            .max(bounds.max - self.centre)
+            .length();
         let m = &self.second;
         let t = |i: usize, j: usize, k: usize| self.third[i].col(j)[k];
         let line = |k: usize| (0..3).map(|i| 2.0 * t(i, i, k) + t(k, i, i)).sum();
@@ -100,7 +109,14 @@ impl Moments {
             radius2: self.radius.min(far).powi(2),
             first: self.first,
             trace: m[0].x + m[1].y + m[2].z,
-            second: [m[0].x, m[1].y, m[2].z, m[0].y + m[1].x, m[0].z + m[2].x, m[1].z + m[2].y],
+            second: [
+                m[0].x,
+                m[1].y,
+                m[2].z,
+                m[0].y + m[1].x,
+                m[0].z + m[2].x,
+                m[1].z + m[2].y,
+            ],
             third_line: DVec3::new(line(0), line(1), line(2)),
             third: [
                 t(0, 0, 0),
@@ -171,7 +187,11 @@ impl Winding {
             }
             w = self.tree(q, beta, stack);
         }
-        if (w - level).abs() < EXACT { self.exact(q) } else { w }
+        if (w - level).abs() < EXACT {
+            self.exact(q)
+        } else {
+            w
+        }
     }
 
     /// The winding number as the sum over all triangles.
@@ -181,7 +201,10 @@ impl Winding {
 
     fn sum(&self, first: u32, count: u32, q: DVec3) -> f64 {
         let slots = first as usize..(first + count) as usize;
-        self.bvh.corners[slots].iter().map(|t| solid_angle(t.map(|p| p - q))).sum()
+        self.bvh.corners[slots]
+            .iter()
+            .map(|t| solid_angle(t.map(|p| p - q)))
+            .sum()
     }
 
     fn tree(&self, q: DVec3, beta: f64, stack: &mut Vec<u32>) -> f64 {
@@ -215,12 +238,19 @@ fn dipoles(bvh: &Bvh) -> Vec<Dipole> {
     for (i, node) in bvh.nodes.iter().enumerate().rev() {
         let first = node.first as usize;
         moments[i] = if node.count > 0 {
-            of_triangles(&bvh.corners[first..first + node.count as usize], &node.bounds)
+            of_triangles(
+                &bvh.corners[first..first + node.count as usize],
+                &node.bounds,
+            )
         } else {
             of_children(&moments[first], &moments[first + 1], &node.bounds)
         };
     }
-    bvh.nodes.iter().zip(&moments).map(|(n, m)| m.dipole(&n.bounds)).collect()
+    bvh.nodes
+        .iter()
+        .zip(&moments)
+        .map(|(n, m)| m.dipole(&n.bounds))
+        .collect()
 }
 
 fn of_triangles(triangles: &[[DVec3; 3]], bounds: &Aabb) -> Moments {
@@ -230,7 +260,11 @@ fn of_triangles(triangles: &[[DVec3; 3]], bounds: &Aabb) -> Moments {
         centre += (a + b + c) * (part / 3.0);
         area += part;
     }
-    let mut m = Moments::at(if area > 0.0 { centre / area } else { bounds.centre() });
+    let mut m = Moments::at(if area > 0.0 {
+        centre / area
+    } else {
+        bounds.centre()
+    });
     triangles.iter().for_each(|t| m.add_triangle(t));
     m
 }

@@ -7,6 +7,8 @@ pub mod csg;
 pub mod sample;
 pub mod sampled;
 pub mod solid;
+pub mod sample;
+pub mod sampled;
 
 use crate::num::{Aabb, Interval};
 use glam::DVec3;

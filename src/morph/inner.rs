@@ -44,7 +44,7 @@ impl Mix {
             Self::Linear => linear(g, lam),
             Self::SpaceTime(b) => b.value(g, lam),
             Self::Grow => grow(g, lam, at.reach),
-            Self::Erode => least_shifted(g, lam, greatest(lam), at.depth),
+            Self::Erode => least_shifted(g, lam, at.depth, None),
             Self::Auto => {
                 let (l, u) = (linear(g, lam) - at.level, grow(g, lam, at.reach));
                 l + (u - l) * at.apart
@@ -64,7 +64,7 @@ impl Mix {
             Self::Linear => combine(lam, g, order),
             Self::SpaceTime(b) => b.bound(g, lam, order),
             Self::Grow => grow_bound(g, lam, at.reach),
-            Self::Erode => least_shifted_bound(g, lam, at.depth),
+            Self::Erode => least_shifted_bound(g, lam, at.depth, None),
             Self::Auto => {
                 let l = combine(lam, g, order) - at.level;
                 let u = grow_bound(g, lam, at.reach);
@@ -89,28 +89,31 @@ fn greatest(lam: &[f64]) -> f64 {
     lam.iter().copied().fold(0.0, f64::max)
 }
 
-/// `min_j (g_j + by (1 - ratio_j))`, ratio_j the weight over the greatest weight.
-fn least_shifted(g: &[f64], lam: &[f64], top: f64, by: f64) -> f64 {
+/// `min_j (g_j + by (1 - ratio_j))` over the shapes with weight but `skip`, ratio_j the weight over
+/// the greatest weight.
+fn least_shifted(g: &[f64], lam: &[f64], by: f64, skip: Option<usize>) -> f64 {
+    let top = greatest(lam);
     let mut least = f64::INFINITY;
-    for (&g, &l) in g.iter().zip(lam) {
-        if l > 0.0 {
+    for (j, (&g, &l)) in g.iter().zip(lam).enumerate() {
+        if l > 0.0 && skip != Some(j) {
             least = least.min(g + by * (1.0 - l / top));
         }
     }
     least
 }
 
-/// The dominant shape whole, and of every other shape what lies within `reach * ratio` of it
-/// (GRAFT.md, recipe E, in the house's sign).
+/// The dominant shape whole, and of every other shape what lies within `reach * ratio` of the rest
+/// (GRAFT.md, recipe E, in the house's sign). The rest leaves the shape itself out: with it the
+/// whole of a lesser shape would be there from half the greatest weight on.
 fn grow(g: &[f64], lam: &[f64], reach: f64) -> f64 {
     let top = greatest(lam);
-    let near = least_shifted(g, lam, top, reach);
     let mut least = f64::INFINITY;
-    for (&g, &l) in g.iter().zip(lam) {
+    for (j, (&v, &l)) in g.iter().zip(lam).enumerate() {
         if l >= top {
-            least = least.min(g);
+            least = least.min(v);
         } else if l > 0.0 {
-            least = least.min(g.max(near - reach * l / top));
+            let near = least_shifted(g, lam, reach, Some(j));
+            least = least.min(v.max(near - reach * l / top));
         }
     }
     least
@@ -141,13 +144,16 @@ fn ratio(lam: &[Interval], i: usize) -> Interval {
     Interval::new(least.min(most), most)
 }
 
-fn least_shifted_bound(g: &[Interval], lam: &[Interval], by: Interval) -> Interval {
+/// Encloses [`least_shifted`]; with a shape skipped, for the case that it is not the dominant one.
+fn least_shifted_bound(
+    g: &[Interval],
+    lam: &[Interval],
+    by: Interval,
+    skip: Option<usize>,
+) -> Interval {
     let (mut lo, mut hi) = (f64::INFINITY, f64::INFINITY);
     let mut dominant = f64::NEG_INFINITY;
-    for i in 0..g.len() {
-        if lam[i].hi <= 0.0 {
-            continue;
-        }
+    for i in (0..g.len()).filter(|&i| lam[i].hi > 0.0 && skip != Some(i)) {
         let r = ratio(lam, i);
         lo = lo.min(g[i].lo + by.lo * (1.0 - r.hi));
         if lam[i].lo > 0.0 {
@@ -161,23 +167,25 @@ fn least_shifted_bound(g: &[Interval], lam: &[Interval], by: Interval) -> Interv
 }
 
 fn grow_bound(g: &[Interval], lam: &[Interval], reach: Interval) -> Interval {
-    let near = least_shifted_bound(g, lam, reach);
     let (mut lo, mut hi) = (f64::INFINITY, f64::INFINITY);
     let mut dominant = f64::NEG_INFINITY;
-    for i in 0..g.len() {
-        if lam[i].hi <= 0.0 {
-            continue;
-        }
+    for i in (0..g.len()).filter(|&i| lam[i].hi > 0.0) {
         let r = ratio(lam, i);
         if r.hi >= 1.0 {
             // perhaps dominant: as low as the shape itself, and if dominant no higher
             lo = lo.min(g[i].lo);
             dominant = dominant.max(g[i].hi);
-        } else {
-            lo = lo.min(g[i].lo.max(near.lo - reach.hi * r.hi));
         }
-        if lam[i].lo > 0.0 {
-            hi = hi.min(g[i].hi.max(near.hi - reach.lo * r.lo));
+        if r.lo < 1.0 {
+            let near = least_shifted_bound(g, lam, reach, Some(i));
+            if r.hi < 1.0 {
+                lo = lo.min(g[i].lo.max(near.lo - reach.hi * r.hi));
+            }
+            if lam[i].lo > 0.0 {
+                hi = hi.min(g[i].hi.max(near.hi - reach.lo * r.lo));
+            }
+        } else {
+            hi = hi.min(g[i].hi);
         }
     }
     Interval::new(lo, hi.min(dominant).max(lo))
