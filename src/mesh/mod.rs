@@ -1,5 +1,31 @@
 //! Triangle meshes and their files. A [`TriMesh`] is plain data: points in millimetres, Z up,
 //! faces counter-clockwise seen from outside.
+//!
+//! [`read`] takes files as they are: what is odd about their geometry is counted in [`Found`], not
+//! refused. [`write()`] makes files that read back as the same mesh, or none.
+//!
+//! - A *shell* is a set of faces that hang together by edges; it is *open* when one of its edges
+//!   has a single face.
+//! - To *weld* is to merge points at exactly the same position; to *snap* is to round positions to
+//!   f32, as files hold them.
+
+mod edges;
+mod error;
+mod found;
+mod frame;
+mod polygon;
+mod read;
+mod soup;
+mod weld;
+mod write;
+
+pub use edges::shells;
+pub use error::MeshError;
+pub use found::Found;
+pub use frame::{Assume, Unit, UnknownWord, Up};
+pub use read::{Loaded, read};
+pub use weld::{snap, weld};
+pub use write::{check_output, write};
 
 use crate::num::Aabb;
 use glam::{DAffine3, DVec3};
