@@ -18,12 +18,14 @@ mod ellipsoid;
 mod gauge;
 mod mean;
 mod shape;
+mod tessellate;
 
 pub use align::align;
 pub use between::Between;
 pub use gauge::Gauge;
 pub use mean::{ambiguous, average};
 pub use shape::{Form, Shape};
+pub use tessellate::tessellate;
 
 use crate::num::{Aabb, Interval};
 use crate::warp::{Barr, Deform, WarpError};
