@@ -7,8 +7,6 @@ pub mod csg;
 pub mod sample;
 pub mod sampled;
 pub mod solid;
-pub mod sample;
-pub mod sampled;
 
 use crate::num::{Aabb, Interval};
 use glam::DVec3;

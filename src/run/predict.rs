@@ -4,6 +4,7 @@ use crate::field::sample::sample;
 use crate::grid::{BRICK, Lattice};
 use crate::iso::{Mesher, extract};
 use crate::job::{Cancelled, Job};
+use crate::recipe::MorphEntry;
 use crate::scene::{Draft, Scene};
 use serde::Serialize;
 
@@ -68,10 +69,9 @@ pub fn predict(draft: &Draft) -> Prediction {
     let blocks = |b: &crate::num::Aabb| (b.size() / (h * 8.0)).ceil().element_product();
     let tables: f64 = draft.boxes().iter().map(|b| blocks(b) * 4.0).sum();
     let shapes = areas.iter().map(|&a| bricks(a) * LEAF_BYTES).sum::<f64>() + tables;
-    let frames = draft.recipe().variants().iter().map(|(_, v)| {
-        v.t.as_ref().map_or(1, |t| t.0.len()) as u64
-    });
-    total(frames.sum(), &Lattice::covering(&draft.domain(), h), size, shapes)
+    let times = |v: &MorphEntry| v.t.as_ref().map_or(1, |t| t.0.len() as u64);
+    let frames = draft.recipe().variants().iter().map(|(_, v)| times(v)).sum();
+    total(frames, &Lattice::covering(&draft.domain(), h), size, shapes)
 }
 
 fn total(frames: u64, lattice: &Lattice, size: Size, shapes: f64) -> Prediction {

@@ -16,8 +16,8 @@ pub(super) enum Body {
     Solid(Vec<SolidPart>),
 }
 
-/// Chord error when a solid's box and area are taken from triangles, mm.
-const CHORD: f64 = 0.5;
+/// Sides of a round section when a solid is taken as triangles.
+const SEGMENTS: u32 = 48;
 
 impl Body {
     /// The elements of a solid's parts, mirror images included; `at` is the solid's key.
@@ -71,7 +71,10 @@ impl Body {
             Self::Solid(parts) => {
                 let mut all = TriMesh::default();
                 for p in parts.iter().filter(|p| p.join != Join::Cut) {
-                    all.append(&tessellate(&p.element, p.round, CHORD));
+                    // parts of solids are primitives, all of which have an outline
+                    if let Some(shell) = tessellate(&p.element, SEGMENTS) {
+                        all.append(&shell);
+                    }
                 }
                 all
             }

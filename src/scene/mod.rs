@@ -26,7 +26,8 @@ use crate::recipe::RecipeError;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
-use std::io;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 /// Why a recipe cannot be brought to life.
@@ -79,7 +80,13 @@ fn hex(bytes: &[u8]) -> String {
 }
 
 fn digest(path: &Path) -> io::Result<Input> {
-    let mut hash = Sha256::new();
-    io::copy(&mut std::fs::File::open(path)?, &mut hash)?;
+    let (mut hash, mut chunk) = (Sha256::new(), vec![0; 1 << 16]);
+    let mut file = File::open(path)?;
+    loop {
+        match file.read(&mut chunk)? {
+            0 => break,
+            n => hash.update(&chunk[..n]),
+        }
+    }
     Ok(Input { file: path.display().to_string(), sha256: hex(&hash.finalize()) })
 }

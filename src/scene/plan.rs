@@ -12,9 +12,6 @@ use crate::warp::Deform;
 use crate::weight::{Ease, Weighting};
 use std::collections::BTreeMap;
 
-/// Cells along the longest side of the lattice on which automatic parameters are measured.
-const PROBE: f64 = 72.0;
-
 /// Which shapes an entry morphs, in order.
 pub(super) fn shape_names(entry: &MorphEntry, at: &str) -> Result<Vec<String>, Problem> {
     let names: Vec<String> = match (&entry.between, &entry.among) {
@@ -96,7 +93,6 @@ pub(super) fn plan(
         _ => Blend::Maps,
     };
     let tall = shapes.iter().map(|s| s.bounds.size().z).sum::<f64>() / shapes.len().max(1) as f64;
-    let longest = shapes.iter().fold(0.0, |m: f64, s| m.max(s.bounds.size().max_element()));
     Ok(Plan {
         shapes: shapes
             .iter()
@@ -110,7 +106,6 @@ pub(super) fn plan(
         sharp: Weighting::Smooth { epsilon: 0.01 * tall, power: 4.0 },
         frames: frames(entry, &names, at)?,
         space_time: space_time(entry.space_time.as_ref(), names.len(), at)?,
-        probe: longest / PROBE,
     })
 }
 
