@@ -1,6 +1,7 @@
 //! One brick with its surroundings, as the meshers see it.
 
 use crate::grid::{BRICK, Brick, Bricks, Lattice};
+use rayon::prelude::*;
 
 /// The samples round a brick: `N` a side, of which the first is `back` before the brick's first.
 pub(super) struct Block<const N: usize> {
@@ -17,9 +18,6 @@ impl<const N: usize> Block<N> {
     /// None where all samples have one sign. Whatever lies on the border of the lattice or beyond
     /// is outside.
     pub(super) fn gather(bricks: &Bricks<f32>, b: [u32; 3], back: u32) -> Option<Self> {
-        if uniform(bricks, b, back) {
-            return None;
-        }
         let lo = first(b).map(|i| i - i64::from(back));
         let fill = bricks.lattice.step as f32;
         let mut samples = vec![fill; N * N * N];
@@ -35,6 +33,13 @@ impl<const N: usize> Block<N> {
             Some(Self { samples })
         }
     }
+}
+
+/// Bricks whose blocks may hold both signs, in order.
+pub(super) fn candidates(bricks: &Bricks<f32>, back: u32) -> Vec<usize> {
+    let all = (0..bricks.bricks.len()).into_par_iter();
+    all.filter(|&n| !uniform(bricks, bricks.place(n), back))
+        .collect()
 }
 
 /// Samples on the border and beyond become positive, as `field::sample` leaves them.

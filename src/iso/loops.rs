@@ -30,10 +30,6 @@ pub(super) struct Patches {
     edges: Vec<Edge>,
     /// One past the last edge of every loop.
     ends: Vec<usize>,
-    /// Loops of more than three edges; a loop of three is a triangle and needs no apex.
-    pub apexes: u32,
-    /// Triangles of all patches.
-    pub triangles: u32,
 }
 
 impl Patches {
@@ -64,11 +60,8 @@ impl Patches {
                 patches.edges.push(EDGES[at]);
                 at = to;
             }
-            let length = (patches.edges.len() - from) as u32;
-            if length > 0 {
+            if patches.edges.len() > from {
                 patches.ends.push(patches.edges.len());
-                patches.apexes += u32::from(length > 3);
-                patches.triangles += if length > 3 { length } else { 1 };
             }
         }
         patches

@@ -23,7 +23,9 @@
 //! ```
 
 mod block;
+mod cell;
 mod cone;
+mod index;
 mod loops;
 mod nets;
 mod normals;

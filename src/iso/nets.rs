@@ -4,7 +4,7 @@
 //! it owns; these need the points of the cells before it, which the bricks there own too. Chunks
 //! join by the cells' places, never by position.
 
-use super::block::{Block, cut, first};
+use super::block::{Block, candidates, cut, first};
 use crate::grid::Bricks;
 use crate::job::{Cancelled, Job, check};
 use crate::mesh::TriMesh;
@@ -31,53 +31,61 @@ const NONE: u16 = u16::MAX;
 
 /// The whole surface.
 pub(super) fn extract(bricks: &Bricks<f32>, job: &dyn Job) -> Result<TriMesh, Cancelled> {
-    let make = |buffer: &mut SurfaceNetsBuffer, n: usize| {
+    let make = |buffer: &mut SurfaceNetsBuffer, &n: &usize| {
         check(job)?;
         let brick = bricks.place(n);
         Ok(Chunk::gather(bricks, brick, 1).map(|chunk| Net::new(bricks, brick, chunk, buffer)))
     };
-    let nets = (0..bricks.bricks.len())
-        .into_par_iter()
-        .map_init(SurfaceNetsBuffer::default, make);
+    let list = candidates(bricks, 1);
+    let nets = list.par_iter().map_init(SurfaceNetsBuffer::default, make);
     let nets = nets.collect::<Result<Vec<_>, Cancelled>>()?;
-    let mut starts = Vec::with_capacity(nets.len());
-    let mut points = Vec::new();
-    for net in &nets {
-        starts.push(points.len() as u32);
-        points.extend(net.iter().flat_map(|n| &n.points));
-    }
-    let sizes = || nets.iter().flatten().map(|n| n.faces.len());
-    let mut faces = vec![[0; 3]; sizes().sum()];
-    let parts = cut(&mut faces, sizes());
-    nets.iter()
-        .flatten()
-        .zip(parts)
-        .par_bridge()
-        .for_each(|(net, faces)| {
-            for (face, cells) in faces.iter_mut().zip(&net.faces) {
-                *face = cells.map(|c| point_of(bricks, &nets, &starts, net.brick, c));
-            }
-        });
+    let nets = Nets::new(bricks, nets.into_iter().flatten().collect());
+    let mut faces = vec![[0; 3]; nets.nets.iter().map(|n| n.faces.len()).sum()];
+    let parts = cut(&mut faces, nets.nets.iter().map(|n| n.faces.len()));
+    nets.nets.par_iter().zip(parts).for_each(|(net, faces)| {
+        for (face, cells) in faces.iter_mut().zip(&net.faces) {
+            *face = cells.map(|c| nets.point(net.brick, c));
+        }
+    });
+    let points = nets.nets.into_iter().flat_map(|n| n.points).collect();
     Ok(TriMesh { points, faces })
 }
 
-/// The mesh's point in a cell of the chunk of a brick.
-fn point_of(
-    bricks: &Bricks<f32>,
-    nets: &[Option<Net>],
-    starts: &[u32],
-    brick: [u32; 3],
-    cell: u16,
-) -> u32 {
-    let cell = Shape::delinearize(u32::from(cell));
-    // a chunk begins one cell before its brick
-    let at: [u32; 3] = std::array::from_fn(|a| (8 * brick[a] + cell[a]).saturating_sub(1));
-    let owner = bricks.index(at.map(|n| n / 8));
-    let local = at.map(|n| n as usize % 8);
-    let slot = local[0] + 8 * local[1] + 64 * local[2];
-    match (nets.get(owner), starts.get(owner)) {
-        (Some(Some(net)), Some(start)) => start + u32::from(net.cells[slot]),
-        _ => 0,
+/// All chunks, and where in the mesh their points begin.
+struct Nets<'a> {
+    bricks: &'a Bricks<f32>,
+    nets: Vec<Net>,
+    starts: Vec<u32>,
+    /// For every brick its place in `nets`, or `u32::MAX`.
+    found: Vec<u32>,
+}
+
+impl<'a> Nets<'a> {
+    fn new(bricks: &'a Bricks<f32>, nets: Vec<Net>) -> Self {
+        let mut found = vec![u32::MAX; bricks.bricks.len()];
+        let (mut starts, mut next) = (Vec::with_capacity(nets.len()), 0);
+        for (n, net) in nets.iter().enumerate() {
+            found[bricks.index(net.brick)] = n as u32;
+            starts.push(next);
+            next += net.points.len() as u32;
+        }
+        Self {
+            bricks,
+            nets,
+            starts,
+            found,
+        }
+    }
+
+    /// The mesh's point in a cell of the chunk of a brick.
+    fn point(&self, brick: [u32; 3], cell: u16) -> u32 {
+        let cell = Shape::delinearize(u32::from(cell));
+        // a chunk begins one cell before its brick
+        let at: [u32; 3] = std::array::from_fn(|a| (8 * brick[a] + cell[a]).saturating_sub(1));
+        let slot = at.iter().rev().fold(0, |n, i| 8 * n + (i % 8) as usize);
+        let owner = self.found.get(self.bricks.index(at.map(|n| n / 8)));
+        let owner = owner.map_or(usize::MAX, |&n| n as usize);
+        self.nets.get(owner).map_or(0, |net| self.starts[owner] + u32::from(net.cells[slot]))
     }
 }
 

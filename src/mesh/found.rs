@@ -143,18 +143,21 @@ impl Found {
             part(self.concave, "concave"),
             part(self.tangled, "tangled"),
         ];
-        let head = if polygons == self.triangles {
-            vec![part(self.faces, "triangle"), part(self.points, "point")]
-        } else {
-            let kinds = listed(kinds);
-            let polygons = part(polygons, "polygon").map(|p| format!("{p} ({kinds})"));
-            vec![
-                polygons,
-                part(self.faces, "triangle"),
-                part(self.points, "point"),
-            ]
-        };
-        let mut text = listed(head);
+        let corners = [self.triangles, self.quads, self.larger]
+            .iter()
+            .filter(|&&n| n > 0)
+            .count();
+        let mut text = listed([
+            if polygons == self.triangles {
+                None
+            } else if corners == 1 && self.larger + self.concave + self.tangled == 0 {
+                part(self.quads, "quad")
+            } else {
+                part(polygons, "polygon").map(|p| format!("{p} ({})", listed(kinds)))
+            },
+            part(self.faces, "triangle"),
+            part(self.points, "point"),
+        ]);
         let open = part(self.open_shells, "open");
         if let Some(shells) = part(self.shells, "shell") {
             let open = open.map(|o| format!(" ({o})")).unwrap_or_default();

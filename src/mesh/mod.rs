@@ -8,6 +8,21 @@
 //!   has a single face.
 //! - To *weld* is to merge points at exactly the same position; to *snap* is to round positions to
 //!   f32, as files hold them.
+//!
+//! ```
+//! use fieldgraft::mesh::{Assume, TriMesh, read, write};
+//! use glam::DVec3;
+//!
+//! let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+//! let mesh = TriMesh { points, faces: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]] };
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("corner.ply");
+//! write(&path, &mesh, "an example", false)?;
+//! let loaded = read(&path, Assume::default())?;
+//! assert_eq!(loaded.mesh, mesh);
+//! assert_eq!(loaded.found.to_string(), "4 triangles, 4 points, 1 shell");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod edges;
 mod error;

@@ -17,8 +17,9 @@ pub(super) enum Cut {
     Tangled,
 }
 
-/// Cutting ears looks at every corner for every ear. Concave polygons above this many corners
-/// become fans: 4096 corners take about a tenth of a second, 100 000 would take a minute.
+/// Concave polygons with more corners become fans, which is wrong but quick: cutting ears looks at
+/// every corner for every ear. 4096 corners take 0.04 s as a comb and 0.4 s as a spiral; 100 000 in
+/// a spiral would take minutes. Real furniture has under a hundred.
 const MOST_CORNERS: usize = 4096;
 
 /// Appends the triangles of `ring` (point indices in order) to `out`, turning as the ring turns.

@@ -4,7 +4,9 @@ use super::camera::Camera;
 use super::scene::Scene;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::f32::consts::{PI, TAU};
+use std::ops::Range;
 
 /// Directions all round; fewer, and shadows on the ground show their edges.
 const SKY: usize = 48;
@@ -14,6 +16,10 @@ const KEY: usize = 16;
 const KEY_RADIUS: f32 = 0.22;
 /// Texels along the longer side of a depth map.
 const TEXELS: f32 = 320.0;
+/// Share by which a triangle is taken larger, so that rounding leaves no gap between two.
+const SLACK: f32 = 1e-4;
+/// Meshes of more faces than this cast the shadow of a coarser one: below it nothing is gained.
+const FINE: usize = 100_000;
 /// How far a point is lifted off its surface before it is looked up, in texels. Less, and slanted
 /// surfaces shade themselves in stripes; more, and light leaks into corners.
 const LIFT: f32 = 1.3;
@@ -40,15 +46,13 @@ pub(super) struct Lights {
 
 impl Lights {
     pub fn new(scene: &Scene, camera: &Camera) -> Self {
-        let directions = directions(camera);
-        let lights: Vec<Light> = directions
-            .into_par_iter()
-            .map(|(toward, color)| Light {
-                toward,
-                color,
-                map: DepthMap::new(scene, toward),
-            })
-            .collect();
+        let caster = Caster::of(scene);
+        let light = |(toward, color)| Light {
+            toward,
+            color,
+            map: DepthMap::new(&caster, toward),
+        };
+        let lights: Vec<Light> = directions(camera).into_par_iter().map(light).collect();
         let open = lights.iter().map(|l| l.color * l.toward.z.max(0.0)).sum();
         Self { lights, open }
     }
@@ -126,6 +130,54 @@ fn spiral(i: usize, n: usize) -> Vec3 {
     Vec3::new(r * cos, r * sin, z)
 }
 
+/// What casts the shadows: the mesh, with the points within one texel made one when it is fine.
+struct Caster<'a> {
+    points: Cow<'a, [Vec3]>,
+    faces: Cow<'a, [[u32; 3]]>,
+    corners: [Vec3; 8],
+}
+
+impl<'a> Caster<'a> {
+    fn of(scene: &'a Scene) -> Self {
+        let corners = scene.corners();
+        if scene.faces.len() < FINE {
+            let (points, faces) = (Cow::from(&scene.points), Cow::from(&scene.faces));
+            return Self {
+                points,
+                faces,
+                corners,
+            };
+        }
+        let scale = TEXELS / (scene.max - scene.min).max_element();
+        let cell = |v: u32| {
+            // Unused points may lie anywhere; the casts saturate.
+            let [x, y, z] = ((scene.points[v as usize] - scene.min) * scale).to_array();
+            [x as u32, y as u32, z as u32]
+        };
+        let mut order: Vec<([u32; 3], u32)> = (0..scene.points.len() as u32)
+            .into_par_iter()
+            .map(|v| (cell(v), v))
+            .collect();
+        order.par_sort_unstable();
+        let mut name = vec![0; scene.points.len()];
+        let mut points = Vec::new();
+        for group in order.chunk_by(|a, b| a.0 == b.0) {
+            group
+                .iter()
+                .for_each(|&(_, v)| name[v as usize] = points.len() as u32);
+            points.push(scene.points[group[0].1 as usize]);
+        }
+        let rename = |f: &[u32; 3]| f.map(|v| name[v as usize]);
+        let whole = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
+        let faces: Vec<[u32; 3]> = scene.faces.par_iter().map(rename).filter(whole).collect();
+        Self {
+            points: Cow::from(points),
+            faces: Cow::from(faces),
+            corners,
+        }
+    }
+}
+
 /// How near to the light the first surface lies, on a grid across the light's direction.
 struct DepthMap {
     across: Vec3,
@@ -139,14 +191,16 @@ struct DepthMap {
 }
 
 impl DepthMap {
-    fn new(scene: &Scene, toward: Vec3) -> Self {
+    fn new(caster: &Caster, toward: Vec3) -> Self {
         let (across, along) = toward.any_orthonormal_pair();
         let flat = |p: Vec3| Vec2::new(p.dot(across), p.dot(along));
-        let corners = scene.corners().map(flat);
+        let corners = caster.corners.map(flat);
         let low = corners.into_iter().fold(Vec2::INFINITY, Vec2::min);
         let size = corners.into_iter().fold(Vec2::NEG_INFINITY, Vec2::max) - low;
         let scale = TEXELS / size.max_element().max(1e-6);
-        let [width, height] = (size * scale).to_array().map(|n| n as usize + 1);
+        // A free texel all round, so that lookups need no care at the border.
+        let [width, height] = (size * scale).to_array().map(|n| n as usize + 3);
+        let low = low - 1.0 / scale;
         let depth = vec![f32::NEG_INFINITY; width * height];
         let mut map = Self {
             across,
@@ -157,75 +211,84 @@ impl DepthMap {
             height,
             depth,
         };
-        let at = |p: &Vec3| ((flat(*p) - low) * scale - 0.5).extend(p.dot(toward));
-        let points: Vec<Vec3> = scene.points.iter().map(at).collect();
-        for f in &scene.faces {
+        let at = |p: &Vec3| ((flat(*p) - low) * scale).extend(p.dot(toward));
+        let points: Vec<Vec3> = caster.points.iter().map(at).collect();
+        for f in caster.faces.iter() {
             map.draw(f.map(|v| points[v as usize]));
         }
         map
     }
 
-    /// Draws a triangle whose x, y are texels (centres at whole numbers) and z its nearness.
+    /// Draws a triangle whose x, y are texels (0.5 is the first centre), z its nearness.
+    #[inline]
     fn draw(&mut self, [a, b, c]: [Vec3; 3]) {
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let (left, top) = (
-            low.x.ceil().max(0.0) as usize,
-            low.y.ceil().max(0.0) as usize,
-        );
-        let right = ((high.x.floor() + 1.0).max(0.0) as usize).min(self.width);
-        let bottom = ((high.y.floor() + 1.0).max(0.0) as usize).min(self.height);
-        if left >= right || top >= bottom {
-            return;
+        // Texels count from 0, so that cutting off the fraction is rounding down.
+        let (low, high) = (a.min(b).min(c) + 0.5, a.max(b).max(c) + 0.5);
+        let (left, top) = (low.x as i32, low.y as i32);
+        let (right, bottom) = (high.x as i32, high.y as i32);
+        if left < right && top < bottom {
+            let right = (right as usize).min(self.width);
+            let bottom = (bottom as usize).min(self.height);
+            self.fill([a, b, c], left as usize..right, top as usize..bottom);
         }
+    }
+
+    fn fill(&mut self, [a, b, c]: [Vec3; 3], columns: Range<usize>, rows: Range<usize>) {
         let area = (b - a).truncate().perp_dot((c - a).truncate());
         if area == 0.0 {
             return;
         }
-        let share = |p: Vec3, q: Vec3, x: f32, y: f32| {
-            ((q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x)) / area
+        // Share of a corner at the first centre, and its steps to the right and down; the third
+        // is what is left.
+        let part = 1.0 / area;
+        let centre = Vec2::new(columns.start as f32 + 0.5, rows.start as f32 + 0.5);
+        let share = |p: Vec3, q: Vec3| {
+            let (side, to) = ((q - p).truncate(), centre - p.truncate());
+            Vec3::new(side.perp_dot(to), -side.y, side.x) * part
         };
-        for y in top..bottom {
-            for x in left..right {
-                let (px, py) = (x as f32, y as f32);
-                let w = [
-                    share(b, c, px, py),
-                    share(c, a, px, py),
-                    share(a, b, px, py),
-                ];
-                if w.iter().all(|&w| w >= -1e-5) {
-                    let depth = &mut self.depth[y * self.width + x];
-                    *depth = depth.max(w[0] * a.z + w[1] * b.z + w[2] * c.z);
+        let (u, v) = (share(b, c), share(c, a));
+        let depth = u * (a.z - c.z) + v * (b.z - c.z);
+        let right = Vec3::new(u.y, v.y, depth.y);
+        for (i, y) in rows.enumerate() {
+            let down = i as f32;
+            let mut at = Vec3::new(
+                u.x + u.z * down,
+                v.x + v.z * down,
+                c.z + depth.x + depth.z * down,
+            );
+            let row = y * self.width;
+            for texel in &mut self.depth[row + columns.start..row + columns.end] {
+                if at.x >= -SLACK && at.y >= -SLACK && at.x + at.y <= 1.0 + SLACK {
+                    *texel = texel.max(at.z);
                 }
+                at += right;
             }
         }
     }
 
     /// The share of a spot that the light reaches, smooth between texels, and the distance to
     /// what stands nearest in its way.
+    #[inline]
     fn open(&self, spot: &Spot, toward: Vec3) -> (f32, f32) {
         let at = spot.at + (spot.normal + toward * 0.5) * (LIFT / self.scale);
         let flat = Vec2::new(at.dot(self.across), at.dot(self.along));
         let place = (flat - self.low) * self.scale - 0.5;
-        let corner = place.floor();
-        let part = place - corner;
-        let (x, y) = (corner.x as i32, corner.y as i32);
-        let outside = x < -1 || y < -1 || x >= self.width as i32 || y >= self.height as i32;
-        if outside {
+        let (x, y) = (place.x as i32 as usize, place.y as i32 as usize);
+        if !(place.min_element() >= 0.0 && x + 1 < self.width && y + 1 < self.height) {
             return (1.0, f32::INFINITY);
         }
-        let (near, mut nearest) = (at.dot(toward), f32::INFINITY);
-        let mut free = |x: i32, y: i32| {
-            let inside = x >= 0 && y >= 0 && x < self.width as i32 && y < self.height as i32;
-            let at = |x: i32, y: i32| self.depth[y as usize * self.width + x as usize];
-            let gap = if inside { at(x, y) - near } else { -1.0 };
-            if gap > 0.0 {
-                nearest = nearest.min(gap);
-                return 0.0;
-            }
-            1.0
-        };
-        let upper = free(x, y) * (1.0 - part.x) + free(x + 1, y) * part.x;
-        let lower = free(x, y + 1) * (1.0 - part.x) + free(x + 1, y + 1) * part.x;
-        (upper * (1.0 - part.y) + lower * part.y, nearest)
+        let part = place - Vec2::new(x as f32, y as f32);
+        let first = y * self.width + x;
+        let near = at.dot(toward);
+        let gap = |i: usize| self.depth[i] - near;
+        let gaps = [first, first + 1, first + self.width, first + self.width + 1].map(gap);
+        let free = gaps.map(|gap| if gap > 0.0 { 0.0 } else { 1.0 });
+        let far = |gap: f32| if gap > 0.0 { gap } else { f32::INFINITY };
+        let nearest = gaps
+            .into_iter()
+            .fold(f32::INFINITY, |n, gap| n.min(far(gap)));
+        let upper = free[0] + (free[1] - free[0]) * part.x;
+        let lower = free[2] + (free[3] - free[2]) * part.x;
+        (upper + (lower - upper) * part.y, nearest)
     }
 }

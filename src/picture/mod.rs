@@ -12,6 +12,7 @@ mod camera;
 mod ground;
 mod image;
 mod light;
+mod normals;
 mod raster;
 mod scene;
 mod shade;

@@ -11,8 +11,10 @@ use rayon::prelude::*;
 
 /// Samples along each side of a pixel.
 const SAMPLES: usize = 3;
+/// The same as a number.
+const SIDE: f32 = SAMPLES as f32;
 /// Samples of a pixel in all.
-const ALL: f32 = (SAMPLES * SAMPLES) as f32;
+const ALL: f32 = SIDE * SIDE;
 /// Rows of pixels drawn in one go.
 const ROWS: usize = 16;
 /// Samples of one pixel whose normals differ less than this (cosine) are lit together.
@@ -21,6 +23,8 @@ const ALIKE: f32 = 0.95;
 const TINT: f32 = 0.55;
 /// Linear colour that faces seen from behind tend to.
 const WARM: Vec3 = Vec3::new(0.75, 0.16, 0.06);
+/// What a surface seen at a slant mirrors of the light: rounds off limbs against each other.
+const SHEEN: f32 = 0.10;
 /// How dark a shadow on the ground may get: 1 is black.
 const SHADOW: f32 = 0.85;
 
@@ -29,9 +33,28 @@ const SHADOW: f32 = 0.85;
 struct Patch {
     pixel: usize,
     count: f32,
+    /// Sum of their places.
     at: Vec3,
+    /// Normal of the first.
+    first: Vec3,
+    /// Sum of their normals.
     normal: Vec3,
     behind: bool,
+}
+
+impl Patch {
+    fn add(&mut self, at: Vec3, normal: Vec3) {
+        self.at += at;
+        self.normal += normal;
+        self.count += 1.0;
+    }
+
+    fn spot(&self) -> Spot {
+        Spot {
+            at: self.at / self.count,
+            normal: self.normal.normalize_or(self.first),
+        }
+    }
 }
 
 pub(super) fn draw(
@@ -82,15 +105,10 @@ impl Painter<'_> {
                 *sum = background * (self.floor(x, top + y) * bare / ALL);
             }
         }
-        let spots: Vec<Spot> = patches
-            .iter()
-            .map(|p| Spot {
-                at: p.at / p.count,
-                normal: p.normal,
-            })
-            .collect();
-        for (patch, light) in patches.iter().zip(self.lights.reach(&spots)) {
-            sums[patch.pixel] += self.color(patch, light) * (patch.count / ALL);
+        let spots: Vec<Spot> = patches.iter().map(Patch::spot).collect();
+        let lights = self.lights.reach(&spots);
+        for ((patch, spot), light) in patches.iter().zip(&spots).zip(lights) {
+            sums[patch.pixel] += self.color(patch.behind, spot, light) * (patch.count / ALL);
         }
         for (pixel, sum) in pixels.iter_mut().zip(sums) {
             *pixel = encode(sum);
@@ -108,64 +126,66 @@ impl Painter<'_> {
     ) -> f32 {
         let first = patches.len();
         let mut misses = 0.0;
+        // Neighbouring samples mostly see one face: its normals are kept.
+        let mut last = (NONE, [Vec3::ZERO; 3]);
         for k in 0..SAMPLES * SAMPLES {
             let (sx, sy) = (x * SAMPLES + k % SAMPLES, y * SAMPLES + k / SAMPLES);
-            let at = sy * band.width + sx;
-            if band.face[at] == NONE {
+            let (face, near) = (
+                band.face[sy * band.width + sx],
+                band.near[sy * band.width + sx],
+            );
+            if face == NONE {
                 misses += 1.0;
                 continue;
             }
-            let seen = self.sample(band.face[at], sx, band.top + sy, band.near[at], pixel);
-            let alike =
-                |p: &&mut Patch| p.behind == seen.behind && p.normal.dot(seen.normal) > ALIKE;
+            if face != last.0 {
+                last = (face, self.scene.normals.smooth(face as usize));
+            }
+            let shares = self.raster.shares(face, sx, band.top + sy);
+            let at = self.camera.unsee(Seen {
+                at: centre(sx, band.top + sy, SIDE),
+                near,
+            });
+            let (normal, behind) = self.facing(face, at, last.1, shares);
+            let alike = |p: &&mut Patch| p.behind == behind && p.first.dot(normal) > ALIKE;
             match patches[first..].iter_mut().find(alike) {
-                Some(patch) => {
-                    patch.at += seen.at;
-                    patch.count += 1.0;
+                Some(patch) => patch.add(at, normal),
+                None => {
+                    let (first, count) = (normal, 1.0);
+                    patches.push(Patch {
+                        pixel,
+                        count,
+                        at,
+                        first,
+                        normal,
+                        behind,
+                    });
                 }
-                None => patches.push(seen),
             }
         }
         misses
     }
 
-    fn sample(&self, face: u32, x: usize, y: usize, near: f32, pixel: usize) -> Patch {
-        let i = face as usize;
-        let place = Seen {
-            at: centre(x, y, SAMPLES as f32),
-            near,
-        };
-        let at = self.camera.unsee(place);
-        let sight = self.camera.sight(at);
-        let behind = self.scene.flat[i].dot(sight) < 0.0;
-        let [u, v, w] = self.raster.shares(face, x, y);
-        let [a, b, c] = self.scene.smooth[i];
-        let mut normal = (a * u + b * v + c * w).normalize_or(self.scene.flat[i]);
-        if behind {
-            normal = -normal;
-        }
+    /// The normal on the side of a face that is seen, and whether that is its back.
+    fn facing(&self, face: u32, at: Vec3, corners: [Vec3; 3], shares: [f32; 3]) -> (Vec3, bool) {
+        let (flat, sight) = (
+            self.scene.normals.flat(face as usize),
+            self.camera.sight(at),
+        );
+        let behind = flat.dot(sight) < 0.0;
+        let [a, b, c] = corners;
+        let smooth = (a * shares[0] + b * shares[1] + c * shares[2]).normalize_or(flat);
+        let normal = if behind { -smooth } else { smooth };
         // Bent back where it looks away: what is seen faces the eye.
         let away = normal.dot(sight).min(0.0);
-        normal = (normal - sight * away).normalize_or(sight);
-        Patch {
-            pixel,
-            count: 1.0,
-            at,
-            normal,
-            behind,
-        }
+        ((normal - sight * away).normalize_or(sight), behind)
     }
 
-    fn color(&self, patch: &Patch, light: Vec3) -> Vec3 {
+    fn color(&self, behind: bool, spot: &Spot, light: Vec3) -> Vec3 {
         let own = linear(self.style.color);
-        let base = if patch.behind {
-            own.lerp(WARM, TINT)
-        } else {
-            own
-        };
-        let sight = self.camera.sight(patch.at / patch.count);
-        let graze = (1.0 - patch.normal.dot(sight).clamp(0.0, 1.0)).powi(4);
-        base * light + light * (0.10 * graze)
+        let base = if behind { own.lerp(WARM, TINT) } else { own };
+        let straight = spot.normal.dot(self.camera.sight(spot.at)).clamp(0.0, 1.0);
+        light * (base + SHEEN * (1.0 - straight).powi(4))
     }
 
     /// The light on the floor under a pixel; 1 where the floor cannot be seen.

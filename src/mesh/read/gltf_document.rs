@@ -39,6 +39,7 @@ pub(super) struct Scene {
     pub nodes: Vec<usize>,
 }
 
+/// Arrays are boxed: the shortest node is two bytes of JSON, and should not take hundreds.
 #[derive(Deserialize)]
 pub(super) struct Node {
     #[serde(default)]
@@ -46,13 +47,13 @@ pub(super) struct Node {
     #[serde(default)]
     pub children: Vec<usize>,
     #[serde(default)]
-    pub matrix: Option<[f64; 16]>,
+    pub matrix: Option<Box<[f64; 16]>>,
     #[serde(default)]
-    pub translation: Option<[f64; 3]>,
+    pub translation: Option<Box<[f64; 3]>>,
     #[serde(default)]
-    pub rotation: Option<[f64; 4]>,
+    pub rotation: Option<Box<[f64; 4]>>,
     #[serde(default)]
-    pub scale: Option<[f64; 3]>,
+    pub scale: Option<Box<[f64; 3]>>,
 }
 
 #[derive(Deserialize)]
@@ -159,18 +160,23 @@ pub(super) fn hint(extension: &str) -> &'static str {
 
 impl Node {
     pub fn transform(&self) -> DAffine3 {
-        if let Some(m) = self.matrix {
-            return DAffine3::from_mat4(DMat4::from_cols_array(&m));
+        if let Some(m) = &self.matrix {
+            return DAffine3::from_mat4(DMat4::from_cols_array(m));
         }
-        let quat = self.rotation.map_or(DQuat::IDENTITY, DQuat::from_array);
+        let quat = self
+            .rotation
+            .as_deref()
+            .map_or(DQuat::IDENTITY, |&q| DQuat::from_array(q));
         DAffine3::from_scale_rotation_translation(
-            self.scale.map_or(DVec3::ONE, DVec3::from),
+            self.scale.as_deref().map_or(DVec3::ONE, |&s| s.into()),
             if quat.length_squared() > 0.0 {
                 quat.normalize()
             } else {
                 DQuat::IDENTITY
             },
-            self.translation.map_or(DVec3::ZERO, DVec3::from),
+            self.translation
+                .as_deref()
+                .map_or(DVec3::ZERO, |&t| t.into()),
         )
     }
 }

@@ -183,7 +183,8 @@ fn contents(path: &Path) -> Result<Vec<u8>, MeshError> {
     Ok(bytes)
 }
 
-fn kind_name(kind: FileType) -> &'static str {
+/// What stands where a file was expected.
+pub(super) fn kind_name(kind: FileType) -> &'static str {
     if kind.is_dir() {
         "folder"
     } else {

@@ -10,7 +10,7 @@ mod tests;
 use super::{
     TriMesh,
     error::MeshError,
-    read::{Format, parse},
+    read::{Format, kind_name, parse},
     weld::welded,
 };
 use std::{
@@ -58,8 +58,8 @@ pub fn write(path: &Path, mesh: &TriMesh, note: &str, force: bool) -> Result<u64
     Ok(bytes.len() as u64)
 }
 
-/// Whether [`write()`] would take this path: a known extension, and nothing there already (with
-/// `force`, no more than a file). Ask before long work.
+/// Whether [`write()`] would take this path: a known extension, a folder that is there, and nothing
+/// there already (with `force`, no more than a file). Ask before long work.
 pub fn check_output(path: &Path, force: bool) -> Result<(), MeshError> {
     target(path, force).map(|_| ())
 }
@@ -84,13 +84,32 @@ fn target(path: &Path, force: bool) -> Result<Target, MeshError> {
             });
         }
     };
-    match fs::symlink_metadata(path) {
-        Ok(m) if m.is_dir() => Err(MeshError::NotAFile {
+    if let Ok(m) = fs::metadata(path)
+        && !m.is_file()
+    {
+        return Err(MeshError::NotAFile {
             path: path.into(),
-            kind: "folder",
+            kind: kind_name(m.file_type()),
+        });
+    }
+    if !force && fs::symlink_metadata(path).is_ok() {
+        return Err(MeshError::Exists { path: path.into() });
+    }
+    let folder = folder(path);
+    match fs::metadata(&folder).and_then(|_| folder.read_dir()) {
+        Ok(_) => Ok(target),
+        Err(cause) => Err(MeshError::Io {
+            path: path.into(),
+            doing: "write",
+            cause,
         }),
-        Ok(_) if !force => Err(MeshError::Exists { path: path.into() }),
-        _ => Ok(target),
+    }
+}
+
+fn folder(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p.to_path_buf(),
+        _ => PathBuf::from("."),
     }
 }
 
@@ -227,16 +246,12 @@ fn place(path: &Path, bytes: &[u8], force: bool) -> Result<(), MeshError> {
         doing: "write",
         cause,
     };
-    let folder = match path.parent() {
-        Some(p) if !p.as_os_str().is_empty() => p.to_path_buf(),
-        _ => PathBuf::from("."),
-    };
     let mut beside = tempfile::Builder::new();
     beside.prefix(".fieldgraft-").suffix(".part");
     // Else the file would stay readable by its owner only, as temporary files are.
     #[cfg(unix)]
     beside.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = beside.tempfile_in(&folder).map_err(failed)?;
+    let mut file = beside.tempfile_in(folder(path)).map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
     let kept = if force {
         file.persist(path)
