@@ -81,11 +81,6 @@ impl Tri {
         }
     }
 
-    /// Unit normal, by the right-hand rule over the corners.
-    pub(super) fn normal(&self) -> DVec3 {
-        self.n
-    }
-
     /// Squared distance.
     #[inline(always)]
     pub(super) fn distance2(&self, px: f64, py: f64, pz: f64) -> f64 {

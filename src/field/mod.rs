@@ -7,6 +7,7 @@ pub mod csg;
 pub mod sample;
 pub mod sampled;
 pub mod solid;
+pub mod mesh;
 
 use crate::num::{Aabb, Interval};
 use glam::DVec3;

@@ -1,0 +1,313 @@
+//! The faces, and pieces of faces, across which inside and outside change: the surface. What lies
+//! inside the union of several shells, or has outside on both sides, is none.
+
+use super::cut::{Class, Cutter, Scale};
+use super::inside::Inside;
+use super::soup::{Sets, edges, sides};
+use crate::bvh::{Bvh, apart};
+use crate::job::{Cancelled, Job, check};
+use crate::num::Aabb;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Faces worked on between two looks at the job and the limits.
+const CHUNK: usize = 2048;
+
+/// The surface, ready for measuring distances.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Surface {
+    pub triangles: Vec<[DVec3; 3]>,
+    /// For each: how far a foot must lie within it (mm) for its side to tell inside from outside.
+    pub certain: Vec<f64>,
+    pub area: f64,
+    pub buried_area: f64,
+    pub nothing_area: f64,
+    pub buried_faces: usize,
+    pub contact_faces: usize,
+    /// Whether pieces remain that are cut only as far as the floor.
+    pub doubtful: bool,
+}
+
+/// Faces over shared points, with what is asked of them again and again.
+struct Faces<'a> {
+    faces: &'a [[u32; 3]],
+    triangles: Vec<[DVec3; 3]>,
+    /// Unit normals, zero for a face without area.
+    normals: Vec<DVec3>,
+    inside: &'a Inside,
+    scale: Scale,
+}
+
+fn area(t: &[DVec3]) -> f64 {
+    (1..t.len().saturating_sub(1))
+        .map(|i| (t[i] - t[0]).cross(t[i + 1] - t[0]).length() * 0.5)
+        .sum()
+}
+
+fn middle(t: &[DVec3; 3]) -> DVec3 {
+    (t[0] + t[1] + t[2]) / 3.0
+}
+
+impl Surface {
+    /// Sorts out the faces of the shells that `inside` is made of.
+    pub(super) fn new(
+        points: &[DVec3],
+        faces: &[[u32; 3]],
+        inside: &Inside,
+        scale: Scale,
+        job: &dyn Job,
+    ) -> Result<Self, Cancelled> {
+        let triangles: Vec<_> = faces
+            .iter()
+            .map(|f| f.map(|v| points[v as usize]))
+            .collect();
+        let normal = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]).normalize_or_zero();
+        let normals = triangles.iter().map(normal).collect();
+        let all = Faces {
+            faces,
+            triangles,
+            normals,
+            inside,
+            scale,
+        };
+        let contacts = all.contacts(job)?;
+        let mut surface = Self::default();
+        for (group, class, margin) in all.untouched(&contacts, job)? {
+            for f in group {
+                surface.add(&all.triangles[f as usize], class, margin);
+                surface.buried_faces += usize::from(class == Class::Buried);
+            }
+        }
+        all.touched(&contacts, &mut surface, job)?;
+        Ok(surface)
+    }
+
+    fn add(&mut self, corners: &[DVec3], class: Class, margin: f64) {
+        let size = area(corners);
+        match class {
+            Class::Buried => self.buried_area += size,
+            Class::Nothing => self.nothing_area += size,
+            Class::Surface | Class::Reversed => {
+                self.area += size;
+                for i in 1..corners.len().saturating_sub(1) {
+                    let [b, c] = if class == Class::Surface {
+                        [i, i + 1]
+                    } else {
+                        [i + 1, i]
+                    };
+                    self.triangles.push([corners[0], corners[b], corners[c]]);
+                    self.certain.push(margin);
+                }
+            }
+        }
+    }
+}
+
+impl Faces<'_> {
+    /// What lies on both sides of a point of a face.
+    fn class(&self, p: DVec3, normal: DVec3) -> Class {
+        let off = normal * self.scale.offset;
+        match (self.inside.at(p + off), self.inside.at(p - off)) {
+            (false, true) => Class::Surface,
+            (true, false) => Class::Reversed,
+            (true, true) => Class::Buried,
+            (false, false) => Class::Nothing,
+        }
+    }
+
+    /// For each face the faces that touch or cross it other than where they are joined.
+    fn contacts(&self, job: &dyn Job) -> Result<Vec<Vec<u32>>, Cancelled> {
+        let bvh = Bvh::new(&self.triangles);
+        let n = self.triangles.len();
+        let mut contacts = vec![vec![]; n];
+        // a mesh that crosses itself everywhere is not worth more memory than this
+        let mut left = 64 * n + 1_000_000;
+        for start in (0..n).step_by(CHUNK) {
+            check(job)?;
+            job.done(start as f64 / n as f64);
+            let found: Vec<Vec<u32>> = (start..n.min(start + CHUNK))
+                .into_par_iter()
+                .map(|i| self.contacts_of(&bvh, i))
+                .collect();
+            for (i, found) in found.into_iter().enumerate() {
+                for j in found.into_iter().take(left) {
+                    left -= 1;
+                    contacts[start + i].push(j);
+                    contacts[j as usize].push((start + i) as u32);
+                }
+            }
+        }
+        Ok(contacts)
+    }
+
+    /// The later faces that face `i` is in contact with.
+    fn contacts_of(&self, bvh: &Bvh, i: usize) -> Vec<u32> {
+        let t = &self.triangles[i];
+        if self.normals[i] == DVec3::ZERO {
+            return vec![];
+        }
+        let slack = self.scale.slack;
+        let mut found = bvh.overlapping(&Aabb::of(*t), slack);
+        found.retain(|&j| {
+            let u = &self.triangles[j as usize];
+            if j as usize <= i || self.normals[j as usize] == DVec3::ZERO {
+                return false;
+            }
+            let (f, g) = (self.faces[i], self.faces[j as usize]);
+            let common: Vec<usize> = (0..3).filter(|&k| g.contains(&f[k])).collect();
+            match common[..] {
+                [] => !apart(t, u, slack),
+                // joined at a corner: one's opposite side must reach the other
+                [k] => {
+                    let l = (0..3).find(|&l| g[l] == f[k]).unwrap_or(0);
+                    let (s, r) = (
+                        [t[(k + 1) % 3], t[(k + 2) % 3]],
+                        [u[(l + 1) % 3], u[(l + 2) % 3]],
+                    );
+                    !apart(&s, u, slack) || !apart(&r, t, slack)
+                }
+                _ => false,
+            }
+        });
+        found.sort_unstable();
+        found
+    }
+
+    /// Faces without contacts, by patches of one class each, with the margin of certainty.
+    fn untouched(
+        &self,
+        contacts: &[Vec<u32>],
+        job: &dyn Job,
+    ) -> Result<Vec<(Vec<u32>, Class, f64)>, Cancelled> {
+        check(job)?;
+        let free =
+            |f: u32| contacts[f as usize].is_empty() && self.normals[f as usize] != DVec3::ZERO;
+        let all: Vec<u32> = (0..self.faces.len() as u32).filter(|&f| free(f)).collect();
+        let alone = |f: u32| {
+            let (class, margin) = self.alone(f);
+            (vec![f], class, margin)
+        };
+        if !self.inside.is_closed() {
+            // the winding number varies along an open shell
+            return Ok(all.into_par_iter().map(alone).collect());
+        }
+        let sides = sides(self.faces);
+        let mut sets = Sets::new(self.faces.len());
+        for edge in edges(&sides) {
+            if let [x, y] = edge
+                && free(x.face)
+                && free(y.face)
+            {
+                sets.join(x.face, y.face);
+            }
+        }
+        let mut roots: Vec<(u32, u32)> = all.into_iter().map(|f| (sets.find(f), f)).collect();
+        roots.sort_unstable();
+        let patches: Vec<Vec<u32>> = roots
+            .chunk_by(|a, b| a.0 == b.0)
+            .map(|c| c.iter().map(|r| r.1).collect())
+            .collect();
+        let patch = |patch: Vec<u32>| match self.patch(&patch) {
+            Some(class) => vec![(patch, class, 0.0)],
+            None => patch
+                .into_iter()
+                .map(alone)
+                .map(|(f, c, _)| (f, c, f64::INFINITY))
+                .collect(),
+        };
+        Ok(patches.into_par_iter().flat_map_iter(patch).collect())
+    }
+
+    /// The class of a patch of a closed shell, by its largest face and two more.
+    fn patch(&self, patch: &[u32]) -> Option<Class> {
+        let size = |&&f: &&u32| area(&self.triangles[f as usize]);
+        let largest = patch.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let class = |f: u32| {
+            self.class(
+                middle(&self.triangles[f as usize]),
+                self.normals[f as usize],
+            )
+        };
+        let first = class(*largest);
+        let more = [patch[patch.len() / 3], patch[patch.len() * 2 / 3]];
+        more.into_iter().all(|f| class(f) == first).then_some(first)
+    }
+
+    /// The class of one face, doubtful ones being surface, and its margin of certainty.
+    fn alone(&self, f: u32) -> (Class, f64) {
+        let (t, n) = (&self.triangles[f as usize], self.normals[f as usize]);
+        let centre = middle(t);
+        let class = self.class(centre, n);
+        let radius = t.iter().fold(0.0, |r: f64, p| r.max(p.distance(centre)));
+        let off = n * self.scale.offset;
+        if self
+            .inside
+            .sharp(centre + off, radius + 2.0 * self.scale.offset)
+        {
+            return (class, 0.0);
+        }
+        let toward = |p: DVec3| self.class(centre + (p - centre) * 0.75, n);
+        let is_surface = |c: Class| matches!(c, Class::Surface | Class::Reversed);
+        let seen = [class, toward(t[0]), toward(t[1]), toward(t[2])];
+        (
+            seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class),
+            f64::INFINITY,
+        )
+    }
+
+    /// Cuts the faces in contact and adds what is surface.
+    fn touched(
+        &self,
+        contacts: &[Vec<u32>],
+        out: &mut Surface,
+        job: &dyn Job,
+    ) -> Result<(), Cancelled> {
+        let all: Vec<u32> = (0..contacts.len() as u32)
+            .filter(|&f| !contacts[f as usize].is_empty())
+            .collect();
+        out.contact_faces = all.len();
+        let limit = 4 * self.faces.len() + 200_000;
+        let classify = |p: DVec3, n: DVec3| self.class(p, n);
+        for chunk in all.chunks(CHUNK) {
+            check(job)?;
+            let full = out.triangles.len() > limit;
+            let pieces: Vec<_> = chunk
+                .par_iter()
+                .map(|&f| {
+                    let contacts = if full {
+                        &[][..]
+                    } else {
+                        &contacts[f as usize][..]
+                    };
+                    let n = self.normals[f as usize];
+                    Cutter::new(&self.triangles, &self.normals, self.scale, &classify, n)
+                        .pieces(f as usize, contacts)
+                })
+                .collect();
+            for face in pieces {
+                out.buried_faces += usize::from(face.iter().any(|p| p.class == Class::Buried));
+                for p in face {
+                    let doubtful = p.doubtful || full;
+                    out.doubtful |= doubtful;
+                    let margin = self.margin(&p.corners, doubtful);
+                    out.add(&p.corners, p.class, margin);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Near the line where faces meet, a piece's side does not tell.
+    fn margin(&self, corners: &[DVec3], doubtful: bool) -> f64 {
+        let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let radius = corners
+            .iter()
+            .fold(0.0, |r: f64, p| r.max(p.distance(centre)));
+        let sharp = self.inside.is_closed() || self.inside.sharp(centre, radius);
+        if doubtful || !sharp {
+            f64::INFINITY
+        } else {
+            2.0 * self.scale.slack
+        }
+    }
+}

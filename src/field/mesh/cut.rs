@@ -1,0 +1,232 @@
+//! A face cut along the faces that touch it, until each piece is surface, or is not.
+
+use crate::bvh::apart;
+use glam::DVec3;
+
+/// What lies on the two sides of a piece of a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Class {
+    /// Outside in front, inside behind.
+    Surface,
+    /// Inside in front, outside behind.
+    Reversed,
+    /// Inside on both sides.
+    Buried,
+    /// Outside on both sides.
+    Nothing,
+}
+
+/// Lengths that the work on contacts goes by, mm.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scale {
+    /// Faces nearer than this to each other are in contact.
+    pub slack: f64,
+    /// How far off a face its two sides are looked at; less than `slack`.
+    pub offset: f64,
+    /// Pieces smaller than this are not cut any further.
+    pub floor: f64,
+}
+
+/// A face is cut to at most this many pieces, and this many more for each face that touches it.
+const PIECES: usize = 64;
+const PIECES_EACH: usize = 16;
+/// Cuts along one branch; halving alone brings any face below any sensible floor by then.
+const DEPTH: u32 = 64;
+/// With more faces than this across a piece it is halved first, so that each half meets fewer.
+const CROWD: usize = 12;
+
+/// A convex piece of a face.
+pub(super) struct Piece {
+    pub corners: Vec<DVec3>,
+    pub class: Class,
+    /// Whether faces still run across it.
+    pub doubtful: bool,
+}
+
+/// Points with normal . p = offset.
+#[derive(Clone, Copy)]
+struct Plane {
+    normal: DVec3,
+    offset: f64,
+}
+
+impl Plane {
+    fn through(p: DVec3, normal: DVec3) -> Self {
+        Self {
+            normal,
+            offset: normal.dot(p),
+        }
+    }
+
+    fn height(&self, p: DVec3) -> f64 {
+        self.normal.dot(p) - self.offset
+    }
+
+    fn range(&self, corners: &[DVec3]) -> (f64, f64) {
+        let heights = corners.iter().map(|&p| self.height(p));
+        heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), h| {
+            (lo.min(h), hi.max(h))
+        })
+    }
+
+    /// The parts of a convex polygon in front of and behind the plane.
+    fn split(&self, corners: &[DVec3]) -> [Vec<DVec3>; 2] {
+        let mut parts = [vec![], vec![]];
+        for (i, &p) in corners.iter().enumerate() {
+            let q = corners[(i + 1) % corners.len()];
+            let (h, g) = (self.height(p), self.height(q));
+            if h >= 0.0 {
+                parts[0].push(p);
+            }
+            if h <= 0.0 {
+                parts[1].push(p);
+            }
+            if h * g < 0.0 {
+                let x = p + (q - p) * (h / (h - g));
+                parts.iter_mut().for_each(|part| part.push(x));
+            }
+        }
+        parts
+    }
+}
+
+/// Cuts one face.
+pub(super) struct Cutter<'a> {
+    /// All faces, by their corners.
+    pub triangles: &'a [[DVec3; 3]],
+    pub normals: &'a [DVec3],
+    pub scale: Scale,
+    /// Class of a piece by a point on it.
+    pub classify: &'a dyn Fn(DVec3, DVec3) -> Class,
+    /// The face's own normal.
+    pub normal: DVec3,
+    budget: usize,
+}
+
+impl<'a> Cutter<'a> {
+    pub(super) fn new(
+        triangles: &'a [[DVec3; 3]],
+        normals: &'a [DVec3],
+        scale: Scale,
+        classify: &'a dyn Fn(DVec3, DVec3) -> Class,
+        normal: DVec3,
+    ) -> Self {
+        Self {
+            triangles,
+            normals,
+            scale,
+            classify,
+            normal,
+            budget: 0,
+        }
+    }
+
+    /// The pieces of face `index`, given the faces that touch it; one piece if it is all alike.
+    pub(super) fn pieces(&mut self, index: usize, contacts: &[u32]) -> Vec<Piece> {
+        self.budget = PIECES + PIECES_EACH * contacts.len();
+        self.cut(self.triangles[index].to_vec(), contacts, DEPTH)
+    }
+
+    fn cut(&mut self, corners: Vec<DVec3>, contacts: &[u32], depth: u32) -> Vec<Piece> {
+        let touches = |&&b: &&u32| !apart(&corners, &self.triangles[b as usize], self.scale.slack);
+        let near: Vec<u32> = contacts.iter().filter(touches).copied().collect();
+        let planes: Vec<Plane> = near
+            .iter()
+            .filter_map(|&b| self.plane(&corners, b))
+            .collect();
+        let (size, halving) = halving(&corners);
+        let done = depth == 0 || self.budget == 0 || size < self.scale.floor;
+        let plane = match planes.first() {
+            Some(_) if planes.len() > CROWD => halving,
+            Some(&plane) => plane,
+            None => return vec![self.leaf(corners, false)],
+        };
+        if done {
+            return vec![self.leaf(corners, true)];
+        }
+        let [front, back] = plane.split(&corners);
+        if front.len() < 3 || back.len() < 3 {
+            return vec![self.leaf(corners, true)];
+        }
+        let mut pieces = self.cut(front, &near, depth - 1);
+        let mut rest = self.cut(back, &near, depth - 1);
+        match (&pieces[..], &rest[..]) {
+            ([a], [b]) if a.class == b.class => {
+                vec![Piece {
+                    corners,
+                    class: a.class,
+                    doubtful: a.doubtful || b.doubtful,
+                }]
+            }
+            _ => {
+                pieces.append(&mut rest);
+                pieces
+            }
+        }
+    }
+
+    fn leaf(&mut self, corners: Vec<DVec3>, doubtful: bool) -> Piece {
+        self.budget = self.budget.saturating_sub(1);
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let class = (self.classify)(middle, self.normal);
+        Piece {
+            corners,
+            class,
+            doubtful,
+        }
+    }
+
+    /// A plane along which touching face `b` may part inside from outside on the piece, if it
+    /// runs across the piece: the face's own, or through a side of it when the two are coplanar.
+    fn plane(&self, corners: &[DVec3], b: u32) -> Option<Plane> {
+        let (t, n) = (&self.triangles[b as usize], self.normals[b as usize]);
+        let own = Plane::through(t[0], n);
+        let least = 0.5 * self.scale.slack;
+        let across = |(lo, hi): (f64, f64)| lo < -least && hi > least;
+        let range = own.range(corners);
+        let (lo, hi) = range;
+        if lo > -2.0 * self.scale.slack && hi < 2.0 * self.scale.slack {
+            let sides = [0, 1, 2].map(|i| {
+                let along = t[(i + 1) % 3] - t[i];
+                Plane::through(t[i], self.normal.cross(along).normalize_or_zero())
+            });
+            let ranges = sides.map(|side| side.range(corners));
+            // inwards of a side is in front of it, or behind where the two normals are opposed
+            let facing = self.normal.dot(n);
+            let out = |&(lo, hi): &(f64, f64)| {
+                if facing > 0.0 {
+                    hi < least
+                } else {
+                    lo > -least
+                }
+            };
+            if ranges.iter().any(out) {
+                return None;
+            }
+            return sides
+                .into_iter()
+                .zip(ranges)
+                .find(|&(_, r)| across(r))
+                .map(|(side, _)| side);
+        }
+        across(range).then_some(own)
+    }
+}
+
+/// The longest distance from the first corner, and the plane that halves it.
+fn halving(corners: &[DVec3]) -> (f64, Plane) {
+    let mut best = (0.0, DVec3::ZERO, DVec3::ZERO);
+    for (i, &p) in corners.iter().enumerate() {
+        for &q in &corners[..i] {
+            let d = p.distance_squared(q);
+            if d > best.0 {
+                best = (d, p, q);
+            }
+        }
+    }
+    let (d2, p, q) = best;
+    (
+        d2.sqrt(),
+        Plane::through((p + q) * 0.5, (p - q).normalize_or_zero()),
+    )
+}

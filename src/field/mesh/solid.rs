@@ -1,0 +1,199 @@
+//! The signed distance to the surface of what is solid.
+
+use super::inside::Inside;
+use crate::bvh::{Bvh, Hit, Nearest};
+use crate::num::{Aabb, Interval};
+use glam::DVec3;
+
+/// Points whose signs are found together.
+const RUN: usize = 64;
+
+/// The surface of a solid, and where it is inside.
+#[derive(Clone, Debug)]
+pub(super) struct Solid {
+    surface: Bvh,
+    /// For each surface triangle, how far a foot must lie within it (mm) for its side to tell.
+    certain: Vec<f64>,
+    inside: Inside,
+    /// Nearer than this a point is on the surface, mm.
+    touch: f64,
+    /// How far the faces that were taken for surface may be from where the sign changes, mm.
+    blur: f64,
+}
+
+/// A point whose sign is known.
+#[derive(Clone, Copy)]
+struct Known {
+    at: DVec3,
+    distance: f64,
+    inside: bool,
+}
+
+fn signed(distance: f64, inside: bool) -> f64 {
+    if inside { -distance } else { distance }
+}
+
+impl Solid {
+    pub(super) fn new(
+        triangles: &[[DVec3; 3]],
+        certain: Vec<f64>,
+        inside: Inside,
+        blur: f64,
+    ) -> Self {
+        let touch = 1e-12 * inside.bounds().size().length();
+        Self {
+            surface: Bvh::new(triangles),
+            certain,
+            inside,
+            touch,
+            blur,
+        }
+    }
+
+    /// The box outside which nothing is inside.
+    pub(super) fn bounds(&self) -> Aabb {
+        *self.inside.bounds()
+    }
+
+    /// Whether the nearest face alone tells that `p` is inside.
+    fn by_face(&self, near: &Nearest) -> Option<bool> {
+        if near.distance <= self.touch {
+            return Some(false);
+        }
+        let margin = self
+            .certain
+            .get(near.face as usize)
+            .copied()
+            .unwrap_or(f64::INFINITY);
+        (near.inside > margin).then_some(near.height < 0.0)
+    }
+
+    pub(super) fn value(&self, p: DVec3) -> f64 {
+        let Some(near) = self.surface.nearest(p) else {
+            return f64::INFINITY;
+        };
+        let inside = self.inside.bounds().contains(p) && self.raw(p, &near);
+        signed(near.distance, inside)
+    }
+
+    /// Inside by winding number, or by the nearest face where that is known to agree.
+    fn raw(&self, p: DVec3, near: &Nearest) -> bool {
+        if near.distance <= self.touch {
+            return false;
+        }
+        let face = if self.inside.is_closed() {
+            self.by_face(near)
+        } else {
+            None
+        };
+        face.unwrap_or_else(|| self.inside.raw(p))
+    }
+
+    pub(super) fn values(&self, at: &[DVec3], out: &mut [f64]) {
+        let hits = self.surface.nearest_all(at);
+        let mut seeds = Vec::with_capacity(RUN + 1);
+        for ((at, hits), out) in at
+            .chunks(RUN)
+            .zip(hits.chunks(RUN))
+            .zip(out.chunks_mut(RUN))
+        {
+            let run = Aabb::of(at.iter().copied());
+            let radius = run.radius();
+            if self.inside.sharp(run.centre(), 2.0 * radius) {
+                // the last point of the run before, if it reaches this one
+                let last = seeds.pop();
+                seeds.clear();
+                seeds.extend(last);
+                self.spread(at, hits, radius, &mut seeds, out);
+            } else {
+                seeds.clear();
+                for ((&p, hit), f) in at.iter().zip(hits).zip(out) {
+                    let inside = hit.distance2.sqrt() > self.touch && self.inside.at(p);
+                    *f = signed(hit.distance2.sqrt(), inside);
+                }
+            }
+        }
+    }
+
+    /// Signs of a run in which only faces part inside from outside: by the nearest face; else
+    /// from a point already known, where the way from it is shorter than the distance of either
+    /// to the surface; else by winding number.
+    fn spread(
+        &self,
+        at: &[DVec3],
+        hits: &[Hit],
+        radius: f64,
+        known: &mut Vec<Known>,
+        out: &mut [f64],
+    ) {
+        let mut open = vec![];
+        for (i, ((&p, hit), f)) in at.iter().zip(hits).zip(out.iter_mut()).enumerate() {
+            let distance = hit.distance2.sqrt();
+            *f = distance;
+            if !self.inside.bounds().contains(p) {
+                continue;
+            }
+            // the way to the foot must lie in the ball that is known to be sharp
+            let near = (self.inside.is_closed() || distance <= radius)
+                .then(|| self.surface.nearest_of(p, hit))
+                .flatten();
+            match near.and_then(|near| self.by_face(&near)) {
+                Some(inside) => {
+                    *f = signed(distance, inside);
+                    known.push(Known {
+                        at: p,
+                        distance,
+                        inside,
+                    });
+                }
+                None => open.push(i),
+            }
+        }
+        for i in open {
+            let (p, distance) = (at[i], out[i]);
+            let reaches =
+                |k: &&Known| k.at.distance(p) < k.distance.max(distance) - self.blur - self.touch;
+            let inside = match known.iter().rev().find(reaches) {
+                Some(k) => k.inside,
+                None => distance > self.touch && self.inside.raw(p),
+            };
+            out[i] = signed(distance, inside);
+            known.push(Known {
+                at: p,
+                distance,
+                inside,
+            });
+        }
+    }
+
+    pub(super) fn bound(&self, b: &Aabb) -> Interval {
+        let (centre, radius) = (b.centre(), b.radius());
+        let Some(near) = self.surface.nearest(centre) else {
+            return Interval::ALL;
+        };
+        let d = near.distance;
+        let round_off = self.touch + 1e-12 * centre.abs().max_element();
+        if self.inside.bounds().meet(*b).is_empty() {
+            return Interval::new((d - radius).max(0.0), d + radius).widen(round_off);
+        }
+        let range = if self.inside.is_closed() {
+            let inside = self.inside.bounds().contains(centre) && self.raw(centre, &near);
+            Interval::ball(signed(d, inside), radius + self.blur)
+        } else if d > radius + self.blur && self.inside.sharp(centre, radius) {
+            let inside = self.inside.at(centre);
+            let cut = inside && !self.holds(b);
+            if cut {
+                Interval::ball(0.0, d + radius)
+            } else {
+                Interval::ball(signed(d, inside), radius)
+            }
+        } else {
+            Interval::ball(0.0, d + radius)
+        };
+        range.widen(round_off)
+    }
+
+    fn holds(&self, b: &Aabb) -> bool {
+        self.inside.bounds().contains(b.min) && self.inside.bounds().contains(b.max)
+    }
+}
