@@ -8,6 +8,7 @@ mod convert;
 mod failure;
 mod inputs;
 mod morph;
+mod npy;
 mod picture;
 mod run;
 mod shell;

@@ -15,7 +15,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// A recipe ready to be made.
-pub struct Job_<'a> {
+pub struct Task<'a> {
     /// The recipe.
     pub recipe: Recipe,
     /// Its text.
@@ -29,9 +29,9 @@ pub struct Job_<'a> {
 }
 
 /// Makes everything, or says how large it would be.
-pub fn make(work: Job_<'_>, making: &Making, watch: &Watch) -> Result<(), Failure> {
+pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failure> {
     let start = Instant::now();
-    let Job_ { recipe, source, beside, names, file } = work;
+    let Task { recipe, source, beside, names, file } = work;
     let frames = frames(&recipe);
     if !making.dry_run {
         names.check(&frames, making.force)?;
@@ -154,7 +154,7 @@ fn frames(recipe: &Recipe) -> Vec<(String, f64)> {
 }
 
 /// The memory that may be used, bytes.
-fn limit(making: &Making) -> Option<u64> {
+pub fn limit(making: &Making) -> Option<u64> {
     making.max_memory.or_else(|| available_memory().map(|free| free / 5 * 4))
 }
 

@@ -7,12 +7,9 @@ mod predict;
 mod report;
 mod system;
 
-#[cfg(test)]
-mod tests;
-
 pub use files::{Names, place_text, time_word};
 pub use frame::{FrameResult, Work, make};
-pub use predict::{Prediction, Size, predict, probe};
+pub use predict::{COARSER, Prediction, predict, predict_one, probe};
 pub use report::{FrameReport, Report, Seconds};
 pub use system::{available_memory, peak_memory};
 

@@ -29,11 +29,11 @@ pub struct Prediction {
 
 /// How much surface there will be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Size {
+struct Size {
     /// Bricks that will hold samples.
-    pub active_bricks: f64,
+    active_bricks: f64,
     /// Triangles.
-    pub triangles: f64,
+    triangles: f64,
 }
 
 // Per square of one cell's side, a surface in general position crosses 1.5 cells on average.
@@ -72,6 +72,17 @@ pub fn predict(draft: &Draft) -> Prediction {
     let times = |v: &MorphEntry| v.t.as_ref().map_or(1, |t| t.0.len() as u64);
     let frames = draft.recipe().variants().iter().map(|(_, v)| times(v)).sum();
     total(frames, &Lattice::covering(&draft.domain(), h), size, shapes)
+}
+
+/// From the area (mm²) of one shape that is sampled directly.
+pub fn predict_one(area: f64, lattice: &Lattice) -> Prediction {
+    let squares = area / (lattice.step * lattice.step);
+    let cells = squares * CELLS_PER_SQUARE;
+    let size = Size {
+        active_bricks: cells / f64::from(BRICK * BRICK) * BRICK_ROOM,
+        triangles: cells * TRIANGLES_PER_CELL,
+    };
+    total(1, lattice, size, 0.0)
 }
 
 fn total(frames: u64, lattice: &Lattice, size: Size, shapes: f64) -> Prediction {

@@ -166,6 +166,17 @@ fn step(grid: &GridEntry, longest: f64) -> f64 {
     grid.voxel.unwrap_or(longest / f64::from(cells))
 }
 
+/// The lattice of one shape that grows by `room` mm.
+pub(super) fn cells(grid: &GridEntry, box_: Aabb, room: f64) -> Result<Lattice, Problem> {
+    let box_ = box_.grow(room);
+    let longest = box_.size().max_element();
+    let step = step(grid, longest);
+    // two cells keep the surface off the border; more only costs
+    let padding = grid.padding.map_or(2.0 * step, |p| p * longest);
+    let lattice = Lattice::covering(&box_.grow(padding), step);
+    fits(&lattice).map(|()| lattice)
+}
+
 fn fits(lattice: &Lattice) -> Result<(), Problem> {
     if lattice.fits_f32() {
         return Ok(());

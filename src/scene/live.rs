@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::place::place;
 use super::{Input, digest};
-use crate::field::mesh::{MeshField, MeshOptions, Thicken};
+use crate::field::mesh::{MeshField, MeshFieldError, MeshOptions, Sign, Thicken, Which};
 use crate::field::sampled::Sampled;
 use crate::field::solid::Assembly;
 use crate::field::{Field, Shared};
@@ -141,9 +141,13 @@ pub(super) fn exact(
             Ok((Arc::new(solid), Vec::new()))
         }
         Body::Mesh(mesh) => {
-            let options = options(entry);
-            let (field, report) = MeshField::new(&mesh, &options, job)?;
-            let notes = report.notes().into_iter().map(|n| format!("{}: {n}", placed.name));
+            let at = join("shapes", &placed.name);
+            let fail = |e: MeshFieldError| match e {
+                MeshFieldError::Cancelled(c) => Stop::Cancelled(c),
+                other => Stop::Problem(Problem::new(at, other.to_string())),
+            };
+            let (field, report) = MeshField::new(&mesh, &options(entry), job).map_err(fail)?;
+            let notes = report.summary().into_iter().map(|n| format!("{}: {n}", placed.name));
             Ok((Arc::new(field), notes.collect()))
         }
     }
@@ -152,12 +156,17 @@ pub(super) fn exact(
 fn options(entry: &ShapeEntry) -> MeshOptions {
     let thicken = entry.thicken.as_ref().map(|t| {
         let ThickenEntry { mm, which } = ThickenEntry::of(t);
-        match (which, entry.sign) {
-            (ThickenWhich::All, _) | (_, SignEntry::Unsigned) => Thicken::All(mm),
-            (ThickenWhich::Open, SignEntry::Winding) => Thicken::Open(mm),
-        }
+        let which = match which {
+            ThickenWhich::Open => Which::Open,
+            ThickenWhich::All => Which::All,
+        };
+        Thicken { mm, which }
     });
-    MeshOptions { thicken, ..MeshOptions::default() }
+    let sign = match entry.sign {
+        SignEntry::Winding => Sign::Winding,
+        SignEntry::Unsigned => Sign::Unsigned,
+    };
+    MeshOptions { thicken, sign, ..MeshOptions::default() }
 }
 
 /// The sampled form of a field at a fine step, mm.

@@ -11,13 +11,12 @@ mod live;
 mod mesh_element;
 mod place;
 mod plan;
+mod single;
 mod variant;
-
-#[cfg(test)]
-mod tests;
 
 pub use draft::Draft;
 pub use live::LiveShape;
+pub use single::Single;
 pub use variant::Variant;
 
 use crate::grid::Lattice;
