@@ -33,7 +33,10 @@ impl Failure {
 
     /// With this code and message.
     pub fn new(code: u8, message: impl Into<String>) -> Self {
-        Self { code, message: message.into() }
+        Self {
+            code,
+            message: message.into(),
+        }
     }
 
     /// A usage error.
@@ -57,7 +60,10 @@ impl Failure {
 
 impl From<Cancelled> for Failure {
     fn from(_: Cancelled) -> Self {
-        Self::new(Self::INTERRUPTED, "interrupted; nothing was left half written")
+        Self::new(
+            Self::INTERRUPTED,
+            "interrupted; nothing was left half written",
+        )
     }
 }
 
@@ -90,9 +96,7 @@ impl From<MeshError> for Failure {
 impl From<PictureError> for Failure {
     fn from(e: PictureError) -> Self {
         match &e {
-            PictureError::Exists(_) => {
-                Self::usage(format!("{e}; overwrite it with --force"))
-            }
+            PictureError::Exists(_) => Self::usage(format!("{e}; overwrite it with --force")),
             PictureError::Size { .. } => Self::usage(e.to_string()),
             PictureError::Write { source, .. } => Self::new(Self::FAILED, format!("{e}: {source}")),
             _ => Self::new(Self::FAILED, e.to_string()),
@@ -107,9 +111,7 @@ impl From<RunError> for Failure {
             RunError::Mesh(e) => e.into(),
             RunError::Picture(e) => e.into(),
             RunError::Exists(_) | RunError::Collision { .. } => Self::usage(e.to_string()),
-            RunError::Morph(_) | RunError::Place { .. } => {
-                Self::new(Self::FAILED, e.to_string())
-            }
+            RunError::Morph(_) | RunError::Place { .. } => Self::new(Self::FAILED, e.to_string()),
         }
     }
 }

@@ -2,9 +2,7 @@
 
 use super::failure::Failure;
 use clap::Args;
-use fieldgraft::recipe::{
-    LengthUnit, PlainOr, ShapeEntry, SignEntry, ThickenEntry, UpAxis, word,
-};
+use fieldgraft::recipe::{LengthUnit, PlainOr, ShapeEntry, SignEntry, ThickenEntry, UpAxis, word};
 use std::path::Path;
 
 /// How to read the input meshes.
@@ -47,9 +45,9 @@ impl Reading {
                 ..ShapeEntry::default()
             };
             // a solid file is a TOML or JSON text; everything else is a mesh
-            let text = file.extension().is_some_and(|e| {
-                e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json")
-            });
+            let text = file
+                .extension()
+                .is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"));
             if text {
                 entry.solid = Some(PlainOr::Plain(file.to_owned()));
             } else {
@@ -57,7 +55,11 @@ impl Reading {
             }
             entry
         };
-        Ok(files.iter().enumerate().map(|(i, f)| entry(i, f.as_ref())).collect())
+        Ok(files
+            .iter()
+            .enumerate()
+            .map(|(i, f)| entry(i, f.as_ref()))
+            .collect())
     }
 }
 
@@ -81,8 +83,12 @@ fn each<T, U: Clone>(
 }
 
 /// A word of the recipe; `auto` leaves it open.
-fn words<'a, T: serde::Deserialize<'a>>(text: &'a String) -> Result<Option<T>, String> {
-    if text == "auto" { Ok(None) } else { word(text).map(Some) }
+fn words<T: serde::de::DeserializeOwned>(text: &String) -> Result<Option<T>, String> {
+    if text == "auto" {
+        Ok(None)
+    } else {
+        word(text).map(Some)
+    }
 }
 
 /// A length in mm; 0 leaves it open.
@@ -110,7 +116,9 @@ pub struct Fineness {
 /// A size in bytes: `800000`, `500M`, `1.5G`, `2GiB`; K, M and G are powers of 1000, KiB of 1024.
 pub fn size(text: &str) -> Result<u64, String> {
     let bad = || format!("got `{text}`; expected a size such as 500M, 2G or 2GiB");
-    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let digits = text
+        .find(|c: char| !c.is_ascii_digit() && c != '.')
+        .unwrap_or(text.len());
     let (number, unit) = text.split_at(digits);
     let factor = match unit.trim().to_ascii_lowercase().as_str() {
         "" | "b" => 1.0,
@@ -151,9 +159,18 @@ mod tests {
         let shapes = reading(&["y", "auto"]).shapes(&files).unwrap();
         assert_eq!((shapes[0].up, shapes[1].up), (Some(UpAxis::Y), None));
         assert!(shapes[1].solid.is_some() && shapes[0].mesh.is_some());
-        assert_eq!(reading(&["z"]).shapes(&files).unwrap()[1].up, Some(UpAxis::Z));
+        assert_eq!(
+            reading(&["z"]).shapes(&files).unwrap()[1].up,
+            Some(UpAxis::Z)
+        );
         let e = reading(&["y", "z", "y"]).shapes(&files).unwrap_err();
         assert!(e.code == Failure::USAGE && e.message.contains("3 values for 2 inputs"));
-        assert!(reading(&["x"]).shapes(&files).unwrap_err().message.contains("known: y, z"));
+        assert!(
+            reading(&["x"])
+                .shapes(&files)
+                .unwrap_err()
+                .message
+                .contains("known: y, z")
+        );
     }
 }

@@ -16,7 +16,6 @@ mod steps;
 mod watch;
 
 use clap::{Args, Parser, Subcommand};
-use failure::Failure;
 use std::process::ExitCode;
 use watch::Watch;
 
@@ -94,7 +93,9 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     if let Some(n) = cli.common.threads {
         // the pool is made here first, so this cannot fail
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(n as usize).build_global();
+        let _ = rayon::ThreadPoolBuilder::new()
+            .num_threads(n as usize)
+            .build_global();
     }
     let watch = Watch::new(&cli.common);
     let done = match cli.command {

@@ -5,7 +5,8 @@ use super::failure::Failure;
 use super::watch::Watch;
 use clap::Args;
 use fieldgraft::job::{self, Job};
-use fieldgraft::picture::{LARGEST, Style, View, render, save_png};
+use fieldgraft::mesh::TriMesh;
+use fieldgraft::picture::{Image, LARGEST, PictureError, Style, View, render, save_png};
 use std::path::PathBuf;
 
 /// What to draw.
@@ -38,7 +39,9 @@ fn view(text: &str) -> Result<View, String> {
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    let sides = text
+        .split_once(['x', 'X'])
+        .and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     sides
         .filter(|s: &[u32; 2]| s.iter().all(|n| (1..=LARGEST).contains(n)))
         .ok_or_else(|| format!("got `{text}`; expected WIDTHxHEIGHT in pixels, 1 to {LARGEST}"))
@@ -57,7 +60,11 @@ fn color(text: &str) -> Result<[u8; 3], String> {
 impl Picture {
     /// Draws.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
-        if !self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        if !self
+            .output
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("png"))
+        {
             let why = "pictures are PNG; give a name that ends in .png";
             return Err(Failure::usage(format!("{}: {why}", self.output.display())));
         }
@@ -73,13 +80,33 @@ impl Picture {
             meshes.push(loaded.mesh);
         }
         watch.stage("picture");
-        let mut style = Style { size: self.size, view: self.view, ..Style::default() };
+        let mut style = Style {
+            size: self.size,
+            view: self.view,
+            ..Style::default()
+        };
         style.color = self.color.unwrap_or(style.color);
         let image = match meshes.as_slice() {
             [one] => render(one, &style)?,
-            many => sheet(many, &self.meshes, &style)?,
+            many => self.sheet(many, &style)?,
         };
         job::check(watch)?;
         Ok(save_png(&self.output, &image, self.force)?)
+    }
+
+    /// All meshes, each in a frame of its own.
+    fn sheet(&self, meshes: &[TriMesh], style: &Style) -> Result<Image, PictureError> {
+        let columns = ((meshes.len() as f64).sqrt().ceil() as u32).max(1);
+        let rows = (meshes.len() as u32).div_ceil(columns);
+        let [w, h] = style.size;
+        let mut all = Image::filled(
+            w.saturating_mul(columns),
+            h.saturating_mul(rows),
+            style.background,
+        )?;
+        for (i, mesh) in (0u32..).zip(meshes) {
+            all.paste(&render(mesh, style)?, i % columns * w, i / columns * h);
+        }
+        Ok(all)
     }
 }

@@ -47,10 +47,8 @@ impl Man {
                 let known: Vec<&str> = program.get_subcommands().map(|c| c.get_name()).collect();
                 let hint = recipe::did_you_mean(name, known);
                 let found = program.find_subcommand(name).cloned();
-                let found = found
-                    .ok_or_else(|| Failure::usage(format!("no command is called `{name}`{hint}")))?;
-                let title = format!("fieldgraft-{}", found.get_name());
-                found.name(title)
+                found
+                    .ok_or_else(|| Failure::usage(format!("no command is called `{name}`{hint}")))?
             }
         };
         let mut text = Vec::new();

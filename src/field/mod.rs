@@ -4,10 +4,10 @@
 //! distance field measures in millimetres.
 
 pub mod csg;
+pub mod mesh;
 pub mod sample;
 pub mod sampled;
 pub mod solid;
-pub mod mesh;
 
 use crate::num::{Aabb, Interval};
 use glam::DVec3;

@@ -42,7 +42,11 @@ impl Planes {
             std::array::from_fn(|n| {
                 let room = ULPS * ulp(p[n].abs().max(p[n + 1].abs())) / (p[n + 1] - p[n]);
                 // a lattice that reaches infinity has NaN here
-                if room > MARGIN { room.min(0.25) } else { MARGIN }
+                if room > MARGIN {
+                    room.min(0.25)
+                } else {
+                    MARGIN
+                }
             })
         });
         Self { at, margin }

@@ -85,7 +85,9 @@ impl<'a> Nets<'a> {
         let slot = at.iter().rev().fold(0, |n, i| 8 * n + (i % 8) as usize);
         let owner = self.found.get(self.bricks.index(at.map(|n| n / 8)));
         let owner = owner.map_or(usize::MAX, |&n| n as usize);
-        self.nets.get(owner).map_or(0, |net| self.starts[owner] + u32::from(net.cells[slot]))
+        self.nets
+            .get(owner)
+            .map_or(0, |net| self.starts[owner] + u32::from(net.cells[slot]))
     }
 }
 

@@ -35,6 +35,7 @@ pub use time::{TimeFn, Times};
 pub use value::{Auto, PlainOr};
 
 use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
 use serde::de::value::{Error as WordError, StrDeserializer};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -173,7 +174,7 @@ pub fn parse_solid(text: &str, file: &Path) -> Result<Solid, RecipeError> {
 ///
 /// # Errors
 /// An unknown word, with the nearest known one.
-pub fn word<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T, String> {
+pub fn word<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     T::deserialize(StrDeserializer::<WordError>::new(text))
         .map_err(|e| source::explain(&e.to_string()))
 }

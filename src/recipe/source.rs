@@ -93,12 +93,19 @@ impl Source {
 
     /// A recipe that was never written down, such as a command line: no file, no lines.
     pub fn unwritten() -> Self {
-        Self { file: PathBuf::new(), text: String::new(), places: Vec::new() }
+        Self {
+            file: PathBuf::new(),
+            text: String::new(),
+            places: Vec::new(),
+        }
     }
 
     /// A text that a program wrote for its user: its keys and lines are nobody's.
     pub fn unwritten_with(text: String) -> Self {
-        Self { text, ..Self::unwritten() }
+        Self {
+            text,
+            ..Self::unwritten()
+        }
     }
 
     /// The name the text was given.

@@ -132,7 +132,10 @@ fn put(
     job.stage("write");
     let start = Instant::now();
     files::folder_of(&path)?;
-    let note = format!("recipe={}", settings.recipe_hash.get(..16).unwrap_or_default());
+    let note = format!(
+        "recipe={}",
+        settings.recipe_hash.get(..16).unwrap_or_default()
+    );
     match mesh::write(&path, mesh, &note, settings.force) {
         Ok(bytes) => {
             frame.file = Some(path.display().to_string());

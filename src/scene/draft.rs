@@ -6,7 +6,7 @@ use super::{Scene, SceneError, mesh_element, plan};
 use crate::grid::Lattice;
 use crate::job::{self, Job};
 use crate::num::Aabb;
-use crate::recipe::{GridEntry, PlainOr, PlaceLike, Problem, Recipe, Source, join};
+use crate::recipe::{GridEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -57,7 +57,13 @@ impl Draft {
         }
         placed.sort_by(|a, b| a.name.cmp(&b.name));
         let step = step(&recipe.grid, longest(&placed));
-        Ok(Self { recipe, source, beside: beside.to_owned(), placed, step })
+        Ok(Self {
+            recipe,
+            source,
+            beside: beside.to_owned(),
+            placed,
+            step,
+        })
     }
 
     /// Side of a cell, mm.
@@ -100,7 +106,13 @@ impl Draft {
     /// What is wrong in the recipe or a file, by its key; cancelled.
     pub fn build(self, job: &dyn Job) -> Result<Scene, SceneError> {
         let (padding, step) = (self.padding(), self.step);
-        let Self { recipe, source, beside, placed, .. } = self;
+        let Self {
+            recipe,
+            source,
+            beside,
+            placed,
+            ..
+        } = self;
         let locate = |p: Problem| SceneError::Bad(source.locate(p));
         let box_ = hull(&placed);
         fits(&Lattice::covering(&box_.grow(padding), step)).map_err(locate)?;
@@ -118,7 +130,13 @@ impl Draft {
                 })?;
             notes.extend(found);
             let (field, volume) = live::sampled(exact.clone(), step, job)?;
-            shapes.push(LiveShape { name, field, exact, volume, bounds });
+            shapes.push(LiveShape {
+                name,
+                field,
+                exact,
+                volume,
+                bounds,
+            });
         }
         let variants = recipe
             .variants()
@@ -128,12 +146,21 @@ impl Draft {
             .map_err(locate)?;
         let mut domain = Aabb::EMPTY;
         for v in &variants {
-            let morph = v.morph(0.5).map_err(|e| locate(Problem::new("morph", e.to_string())))?;
+            let morph = v
+                .morph(0.5)
+                .map_err(|e| locate(Problem::new("morph", e.to_string())))?;
             domain = domain.hull(morph.domain());
         }
         let lattice = Lattice::covering(&domain.grow(padding), step);
         fits(&lattice).map_err(locate)?;
-        Ok(Scene { name: recipe.name, shapes, variants, lattice, notes, inputs })
+        Ok(Scene {
+            name: recipe.name,
+            shapes,
+            variants,
+            lattice,
+            notes,
+            inputs,
+        })
     }
 }
 

@@ -22,14 +22,18 @@ pub(super) fn element(p: Primitive<'_>, deform: Deform, at: &str) -> Result<Elem
 fn build(p: Primitive<'_>) -> Result<Element, ElementError> {
     let v = DVec3::from_array;
     match p {
-        Primitive::Box(b) => {
-            Element::block(v(b.center), v(b.size) * 0.5, rotation(b.rotate_deg))
-        }
+        Primitive::Box(b) => Element::block(v(b.center), v(b.size) * 0.5, rotation(b.rotate_deg)),
         Primitive::Cylinder(c) => Element::rod(v(c.from), v(c.to), c.radius),
         Primitive::Capsule(c) => Element::capsule(v(c.from), v(c.to), c.radius),
         Primitive::Ellipsoid(e) => {
             let half = v(e.size) * 0.5;
-            Element::new(Shape::Ellipsoid, v(e.center), rotation(e.rotate_deg), half, Deform::NONE)
+            Element::new(
+                Shape::Ellipsoid,
+                v(e.center),
+                rotation(e.rotate_deg),
+                half,
+                Deform::NONE,
+            )
         }
         Primitive::Prism(p) => {
             let turn = rotation(p.rotate_deg);
@@ -59,7 +63,11 @@ fn area(p: &[DVec2]) -> f64 {
 
 /// The deformation of a part, radians.
 pub(super) fn deform(twist_deg: f64, taper: f64, bend_deg: f64) -> Deform {
-    Deform { twist: twist_deg.to_radians(), taper, bend: bend_deg.to_radians() }
+    Deform {
+        twist: twist_deg.to_radians(),
+        taper,
+        bend: bend_deg.to_radians(),
+    }
 }
 
 /// The element of a solid's part and its rounding, mm; `at` is the part's key.

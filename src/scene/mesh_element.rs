@@ -2,8 +2,8 @@
 
 use super::elements::rotation;
 use crate::element::{Element, Form, Shape};
-use crate::field::mesh::{MeshField, MeshOptions};
 use crate::field::Field;
+use crate::field::mesh::{MeshField, MeshOptions};
 use crate::job::Job;
 use crate::mesh::{Assume, Unit, Up, read};
 use crate::num::Aabb;
@@ -24,7 +24,9 @@ struct MeshForm {
 
 impl fmt::Debug for MeshForm {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.debug_struct("MeshForm").field("centre", &self.centre).finish_non_exhaustive()
+        f.debug_struct("MeshForm")
+            .field("centre", &self.centre)
+            .finish_non_exhaustive()
     }
 }
 
@@ -59,8 +61,13 @@ pub(super) fn read_all(
 }
 
 fn element(m: &MeshShape, beside: &Path, job: &dyn Job) -> Result<Element, String> {
-    let assume = Assume { up: Some(Up::Z), unit: Some(Unit::Mm) };
-    let mesh = read(&beside.join(&m.file), assume).map_err(|e| e.to_string())?.mesh;
+    let assume = Assume {
+        up: Some(Up::Z),
+        unit: Some(Unit::Mm),
+    };
+    let mesh = read(&beside.join(&m.file), assume)
+        .map_err(|e| e.to_string())?
+        .mesh;
     let own = mesh.bounds();
     let (field, _) =
         MeshField::new(&mesh, &MeshOptions::default(), job).map_err(|e| e.to_string())?;
@@ -68,7 +75,11 @@ fn element(m: &MeshShape, beside: &Path, job: &dyn Job) -> Result<Element, Strin
     if half.min_element() <= 0.0 {
         return Err(format!("{}: a flat mesh is no element", m.file.display()));
     }
-    let form = MeshForm { field, centre: own.centre(), half };
+    let form = MeshForm {
+        field,
+        centre: own.centre(),
+        half,
+    };
     let centre = m.center.map_or(own.centre(), DVec3::from_array);
     let size = m.size.map_or(half, |s| DVec3::from_array(s) * 0.5);
     let shape = Shape::Mesh(Arc::new(form));
