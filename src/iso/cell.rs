@@ -128,6 +128,17 @@ impl Cell<'_> {
         (mix(y[0], y[1], p.z), slope)
     }
 
+    /// The position of a corner, mm.
+    pub(super) fn corner(&self, n: u8) -> DVec3 {
+        self.position(corner(n))
+    }
+
+    /// The inverse of [`Cell::position`].
+    pub(super) fn share(&self, p: DVec3) -> DVec3 {
+        let [lo, hi] = [self.corner(0), self.corner(7)];
+        (p - lo) / (hi - lo)
+    }
+
     /// In mm, rounded to f32.
     pub(super) fn position(&self, p: DVec3) -> DVec3 {
         let of = |a: usize| {

@@ -10,8 +10,8 @@
 //! (planes stay planes), crossings and apexes keep a margin from the planes, and
 //! the separation of two hulls shrinks with that margin only.
 
-use super::cell::{Cell, Closed, Planes, values};
-use super::index::{Apexes, Beside, Signs, Surface, cells, crossed};
+use super::cell::Cell;
+use super::index::{Apexes, Beside, Surface, crossed};
 use super::loops::{Edge, PATCHES};
 use crate::grid::Bricks;
 use crate::job::{Cancelled, Job, check};
@@ -41,30 +41,14 @@ pub(super) fn extract(bricks: &Bricks<f32>, job: &dyn Job) -> Result<TriMesh, Ca
 
 /// Writes the points and faces of one brick.
 fn fill(surface: &Surface, n: usize, points: &mut [DVec3], faces: &mut [[u32; 3]]) {
-    let brick = surface.indices[n].brick;
-    let Some(block) = Closed::gather(surface.bricks, brick, 0) else {
-        return;
-    };
-    let beside = surface.beside(brick);
-    let signs = Signs::new(&block);
-    let planes = Planes::new(&surface.bricks.lattice, brick);
+    let beside = surface.beside(surface.indices[n].brick);
     let (points, faces) = (points.iter_mut(), faces.iter_mut());
     let mut out = Writer {
         points,
         faces,
         next: surface.starts[n],
     };
-    for at in cells() {
-        let config = signs.config(at);
-        if config != 0 && config != 255 {
-            let cell = Cell {
-                at,
-                planes: &planes,
-                values: values(&block, at),
-            };
-            out.cell(&cell, config, &beside);
-        }
-    }
+    surface.visit(n, |cell, config| out.cell(cell, config, &beside));
 }
 
 /// Fills a brick's share of the mesh.

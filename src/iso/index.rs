@@ -4,7 +4,7 @@
 //! cell's; so each has one number, whichever cell asks.
 
 use super::block::{candidates, cut};
-use super::cell::Closed;
+use super::cell::{Cell, Closed, Planes, values};
 use super::loops::{Edge, PATCHES, Patches};
 use crate::grid::Bricks;
 use crate::job::{Cancelled, Job, check};
@@ -40,10 +40,10 @@ impl Apexes {
 }
 
 /// The corners of a cell that are inside, for all cells of a brick.
-pub(super) struct Signs([[u16; 9]; 9]);
+struct Signs([[u16; 9]; 9]);
 
 impl Signs {
-    pub(super) fn new(block: &Closed) -> Self {
+    fn new(block: &Closed) -> Self {
         let mut rows = [[0; 9]; 9];
         for (n, row) in block.samples.chunks_exact(9).enumerate() {
             let bits = row
@@ -56,14 +56,14 @@ impl Signs {
     }
 
     /// Bit n is set where corner n of cell (x, y, z) is inside.
-    pub(super) fn config(&self, [x, y, z]: [usize; 3]) -> u8 {
+    fn config(&self, [x, y, z]: [usize; 3]) -> u8 {
         let pair = |y: usize, z: usize| (self.0[z][y] >> x & 3) as u8;
         pair(y, z) | pair(y + 1, z) << 2 | pair(y, z + 1) << 4 | pair(y + 1, z + 1) << 6
     }
 }
 
 /// Cells of a brick, x fastest.
-pub(super) fn cells() -> impl Iterator<Item = [usize; 3]> {
+fn cells() -> impl Iterator<Item = [usize; 3]> {
     (0..512).map(|n| [n & 7, n >> 3 & 7, n >> 6])
 }
 
@@ -187,6 +187,29 @@ impl<'a> Surface<'a> {
     pub(super) fn beside(&self, b: [u32; 3]) -> Beside<'_> {
         let up = |d: usize| std::array::from_fn(|a| b[a] + (d >> a & 1) as u32);
         Beside(std::array::from_fn(|d| self.index(up(d))))
+    }
+
+    /// Shows all cells of a brick that hold both signs, in order.
+    pub(super) fn visit(&self, n: usize, mut each: impl FnMut(&Cell, u8)) {
+        let brick = self.indices[n].brick;
+        let Some(block) = Closed::gather(self.bricks, brick, 0) else {
+            return;
+        };
+        let signs = Signs::new(&block);
+        let planes = Planes::new(&self.bricks.lattice, brick);
+        for at in cells() {
+            let config = signs.config(at);
+            if config != 0 && config != 255 {
+                each(
+                    &Cell {
+                        at,
+                        planes: &planes,
+                        values: values(&block, at),
+                    },
+                    config,
+                );
+            }
+        }
     }
 
     /// The only apex of the cell at a sample of the lattice, if it has just one.
