@@ -147,6 +147,11 @@ impl Camera {
         })
     }
 
+    /// What a step towards the eye, small and near the origin, adds to nearness.
+    pub fn nearness(&self, step: f32) -> f32 {
+        self.eye.map_or(step, |eye| step / (eye * eye))
+    }
+
     /// The point that falls there.
     pub fn unsee(&self, seen: Seen) -> Vec3 {
         let (origin, direction) = self.ray(seen.at);

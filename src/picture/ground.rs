@@ -1,6 +1,7 @@
 //! The shadow on the ground: how much of the studio's light reaches the floor round the feet.
 
-use super::light::{Lights, Spot};
+use super::depth_map::Spot;
+use super::light::Lights;
 use super::scene::Scene;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;

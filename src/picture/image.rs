@@ -1,7 +1,8 @@
 //! Pixels, and their way into a file.
 
 use super::{LARGEST, PictureError};
-use std::{fs, io, path::Path};
+use std::io::{self, Write as _};
+use std::path::Path;
 
 /// An sRGB picture, rows from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,6 +52,17 @@ impl Image {
     pub fn get(&self, x: u32, y: u32) -> Option<[u8; 3]> {
         let index = y as usize * self.width as usize + x as usize;
         (x < self.width && y < self.height).then(|| self.pixels[index])
+    }
+
+    /// Mixes a colour into a pixel; outside, nothing happens.
+    pub(super) fn blend(&mut self, x: u32, y: u32, color: [u8; 3], share: f32) {
+        if x < self.width && y < self.height {
+            let pixel = &mut self.pixels[y as usize * self.width as usize + x as usize];
+            for (old, new) in pixel.iter_mut().zip(color) {
+                let (from, to) = (f32::from(*old), f32::from(new));
+                *old = (from + (to - from) * share).round() as u8;
+            }
+        }
     }
 
     /// Puts another picture on top, its corner at (x, y); what sticks out is cut off.
@@ -107,8 +119,8 @@ fn write(path: &Path, image: &Image, force: bool) -> io::Result<()> {
     // Readable by others, as any file a program makes; the umask still has its say.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder)?;
-    fs::write(file.path(), bytes)?;
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(&bytes)?;
     if force {
         file.persist(path)
     } else {

@@ -1,36 +1,20 @@
 //! The studio: light from many directions, each with a depth map of what it reaches first.
 
 use super::camera::Camera;
+use super::depth_map::{Caster, DepthMap, Spot};
 use super::scene::Scene;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
-use std::borrow::Cow;
-use std::f32::consts::{PI, TAU};
-use std::ops::Range;
+use std::f32::consts::PI;
 
-/// Directions all round; fewer, and shadows on the ground show their edges.
-const SKY: usize = 48;
-/// Directions within the key light's disc.
-const KEY: usize = 16;
+/// Directions of the sky; fewer, and shadows on the ground show their edges.
+const ABOVE: usize = 30;
+/// Directions of the bounce from below, which is dim.
+const BELOW: usize = 10;
+/// Directions within the key light's disc; fewer, and rods cast bundles of stripes.
+const KEY: usize = 28;
 /// Radius of the key light's disc, radians: softens the edge of its shadow.
 const KEY_RADIUS: f32 = 0.22;
-/// Texels along the longer side of a depth map.
-const TEXELS: f32 = 320.0;
-/// Share by which a triangle is taken larger, so that rounding leaves no gap between two.
-const SLACK: f32 = 1e-4;
-/// Meshes of more faces than this cast the shadow of a coarser one: below it nothing is gained.
-const FINE: usize = 100_000;
-/// How far a point is lifted off its surface before it is looked up, in texels. Less, and slanted
-/// surfaces shade themselves in stripes; more, and light leaks into corners.
-const LIFT: f32 = 1.3;
-
-/// A place to light.
-#[derive(Clone, Copy)]
-pub(super) struct Spot {
-    pub at: Vec3,
-    /// Unit normal on the side that is seen.
-    pub normal: Vec3,
-}
 
 struct Light {
     toward: Vec3,
@@ -99,196 +83,38 @@ fn directions(camera: &Camera) -> Vec<(Vec3, Vec3)> {
     // The camera's bearing, so that every view is lit alike. From above, the picture's bottom.
     let level = Vec3::new(camera.toward.x, camera.toward.y, 0.0);
     let front = level.normalize_or(-camera.up);
-    let key = (front * 0.55 - camera.right * 0.75 + Vec3::Z * 1.05).normalize();
+    let key = (front * 0.75 - camera.right * 0.75 + Vec3::Z).normalize();
     let fill = (front * 0.8 + camera.right * 0.9 + Vec3::Z * 0.35).normalize();
-    let sky = (0..SKY).map(|i| {
-        let toward = spiral(i, SKY);
+    let from_sky = |toward: Vec3| {
         let above = 0.5 + 0.5 * toward.z;
-        let glow = 0.30 + 0.95 * above * above + 0.55 * toward.dot(fill).max(0.0).powi(2);
-        (toward, Vec3::new(0.97, 0.99, 1.03) * (glow / SKY as f32))
-    });
+        let glow = 0.18 + 0.95 * above * above + 0.60 * toward.dot(fill).max(0.0).powi(2);
+        (toward, Vec3::new(0.97, 0.99, 1.03) * (glow * 0.5))
+    };
+    let above = spiral(ABOVE, 1.0, 0.0)
+        .map(from_sky)
+        .map(|(l, c)| (l, c / ABOVE as f32));
+    let below = spiral(BELOW, 0.0, -1.0)
+        .map(from_sky)
+        .map(|(l, c)| (l, c / BELOW as f32));
     let (u, v) = key.any_orthonormal_pair();
     let disc = (0..KEY).map(|i| {
         let r = ((i as f32 + 0.5) / KEY as f32).sqrt() * KEY_RADIUS;
         let (sin, cos) = (i as f32 * GOLDEN).sin_cos();
-        (
-            (key + (u * cos + v * sin) * r).normalize(),
-            Vec3::new(1.03, 1.0, 0.95) * (0.42 / KEY as f32),
-        )
+        let toward = (key + (u * cos + v * sin) * r).normalize();
+        (toward, Vec3::new(1.03, 1.0, 0.95) * (0.62 / KEY as f32))
     });
-    sky.chain(disc).collect()
+    above.chain(below).chain(disc).collect()
 }
 
 /// The angle that spreads points evenly over a spiral.
 const GOLDEN: f32 = PI * 0.763_932;
 
-/// Point `i` of `n` spread evenly over the unit sphere.
-fn spiral(i: usize, n: usize) -> Vec3 {
-    let z = 1.0 - (2.0 * i as f32 + 1.0) / n as f32;
-    let (sin, cos) = (i as f32 * GOLDEN % TAU).sin_cos();
-    let r = (1.0 - z * z).max(0.0).sqrt();
-    Vec3::new(r * cos, r * sin, z)
-}
-
-/// What casts the shadows: the mesh, with the points within one texel made one when it is fine.
-struct Caster<'a> {
-    points: Cow<'a, [Vec3]>,
-    faces: Cow<'a, [[u32; 3]]>,
-    corners: [Vec3; 8],
-}
-
-impl<'a> Caster<'a> {
-    fn of(scene: &'a Scene) -> Self {
-        let corners = scene.corners();
-        if scene.faces.len() < FINE {
-            let (points, faces) = (Cow::from(&scene.points), Cow::from(&scene.faces));
-            return Self {
-                points,
-                faces,
-                corners,
-            };
-        }
-        let scale = TEXELS / (scene.max - scene.min).max_element();
-        let cell = |v: u32| {
-            // Unused points may lie anywhere; the casts saturate.
-            let [x, y, z] = ((scene.points[v as usize] - scene.min) * scale).to_array();
-            [x as u32, y as u32, z as u32]
-        };
-        let mut order: Vec<([u32; 3], u32)> = (0..scene.points.len() as u32)
-            .into_par_iter()
-            .map(|v| (cell(v), v))
-            .collect();
-        order.par_sort_unstable();
-        let mut name = vec![0; scene.points.len()];
-        let mut points = Vec::new();
-        for group in order.chunk_by(|a, b| a.0 == b.0) {
-            group
-                .iter()
-                .for_each(|&(_, v)| name[v as usize] = points.len() as u32);
-            points.push(scene.points[group[0].1 as usize]);
-        }
-        let rename = |f: &[u32; 3]| f.map(|v| name[v as usize]);
-        let whole = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
-        let faces: Vec<[u32; 3]> = scene.faces.par_iter().map(rename).filter(whole).collect();
-        Self {
-            points: Cow::from(points),
-            faces: Cow::from(faces),
-            corners,
-        }
-    }
-}
-
-/// How near to the light the first surface lies, on a grid across the light's direction.
-struct DepthMap {
-    across: Vec3,
-    along: Vec3,
-    low: Vec2,
-    /// Texels a unit.
-    scale: f32,
-    width: usize,
-    height: usize,
-    depth: Vec<f32>,
-}
-
-impl DepthMap {
-    fn new(caster: &Caster, toward: Vec3) -> Self {
-        let (across, along) = toward.any_orthonormal_pair();
-        let flat = |p: Vec3| Vec2::new(p.dot(across), p.dot(along));
-        let corners = caster.corners.map(flat);
-        let low = corners.into_iter().fold(Vec2::INFINITY, Vec2::min);
-        let size = corners.into_iter().fold(Vec2::NEG_INFINITY, Vec2::max) - low;
-        let scale = TEXELS / size.max_element().max(1e-6);
-        // A free texel all round, so that lookups need no care at the border.
-        let [width, height] = (size * scale).to_array().map(|n| n as usize + 3);
-        let low = low - 1.0 / scale;
-        let depth = vec![f32::NEG_INFINITY; width * height];
-        let mut map = Self {
-            across,
-            along,
-            low,
-            scale,
-            width,
-            height,
-            depth,
-        };
-        let at = |p: &Vec3| ((flat(*p) - low) * scale).extend(p.dot(toward));
-        let points: Vec<Vec3> = caster.points.iter().map(at).collect();
-        for f in caster.faces.iter() {
-            map.draw(f.map(|v| points[v as usize]));
-        }
-        map
-    }
-
-    /// Draws a triangle whose x, y are texels (0.5 is the first centre), z its nearness.
-    #[inline]
-    fn draw(&mut self, [a, b, c]: [Vec3; 3]) {
-        // Texels count from 0, so that cutting off the fraction is rounding down.
-        let (low, high) = (a.min(b).min(c) + 0.5, a.max(b).max(c) + 0.5);
-        let (left, top) = (low.x as i32, low.y as i32);
-        let (right, bottom) = (high.x as i32, high.y as i32);
-        if left < right && top < bottom {
-            let right = (right as usize).min(self.width);
-            let bottom = (bottom as usize).min(self.height);
-            self.fill([a, b, c], left as usize..right, top as usize..bottom);
-        }
-    }
-
-    fn fill(&mut self, [a, b, c]: [Vec3; 3], columns: Range<usize>, rows: Range<usize>) {
-        let area = (b - a).truncate().perp_dot((c - a).truncate());
-        if area == 0.0 {
-            return;
-        }
-        // Share of a corner at the first centre, and its steps to the right and down; the third
-        // is what is left.
-        let part = 1.0 / area;
-        let centre = Vec2::new(columns.start as f32 + 0.5, rows.start as f32 + 0.5);
-        let share = |p: Vec3, q: Vec3| {
-            let (side, to) = ((q - p).truncate(), centre - p.truncate());
-            Vec3::new(side.perp_dot(to), -side.y, side.x) * part
-        };
-        let (u, v) = (share(b, c), share(c, a));
-        let depth = u * (a.z - c.z) + v * (b.z - c.z);
-        let right = Vec3::new(u.y, v.y, depth.y);
-        for (i, y) in rows.enumerate() {
-            let down = i as f32;
-            let mut at = Vec3::new(
-                u.x + u.z * down,
-                v.x + v.z * down,
-                c.z + depth.x + depth.z * down,
-            );
-            let row = y * self.width;
-            for texel in &mut self.depth[row + columns.start..row + columns.end] {
-                if at.x >= -SLACK && at.y >= -SLACK && at.x + at.y <= 1.0 + SLACK {
-                    *texel = texel.max(at.z);
-                }
-                at += right;
-            }
-        }
-    }
-
-    /// The share of a spot that the light reaches, smooth between texels, and the distance to
-    /// what stands nearest in its way.
-    #[inline]
-    fn open(&self, spot: &Spot, toward: Vec3) -> (f32, f32) {
-        let at = spot.at + (spot.normal + toward * 0.5) * (LIFT / self.scale);
-        let flat = Vec2::new(at.dot(self.across), at.dot(self.along));
-        let place = (flat - self.low) * self.scale - 0.5;
-        let (x, y) = (place.x as i32 as usize, place.y as i32 as usize);
-        if !(place.min_element() >= 0.0 && x + 1 < self.width && y + 1 < self.height) {
-            return (1.0, f32::INFINITY);
-        }
-        let part = place - Vec2::new(x as f32, y as f32);
-        let first = y * self.width + x;
-        let near = at.dot(toward);
-        let gap = |i: usize| self.depth[i] - near;
-        let gaps = [first, first + 1, first + self.width, first + self.width + 1].map(gap);
-        let free = gaps.map(|gap| if gap > 0.0 { 0.0 } else { 1.0 });
-        let far = |gap: f32| if gap > 0.0 { gap } else { f32::INFINITY };
-        let nearest = gaps
-            .into_iter()
-            .fold(f32::INFINITY, |n, gap| n.min(far(gap)));
-        let upper = free[0] + (free[1] - free[0]) * part.x;
-        let lower = free[2] + (free[3] - free[2]) * part.x;
-        (upper + (lower - upper) * part.y, nearest)
-    }
+/// That many points spread evenly over the unit sphere between two heights.
+fn spiral(count: usize, from: f32, to: f32) -> impl Iterator<Item = Vec3> {
+    (0..count).map(move |i| {
+        let z = from + (to - from) * (i as f32 + 0.5) / count as f32;
+        let (sin, cos) = (i as f32 * GOLDEN).sin_cos();
+        let r = (1.0 - z * z).max(0.0).sqrt();
+        Vec3::new(r * cos, r * sin, z)
+    })
 }

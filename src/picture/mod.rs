@@ -9,6 +9,8 @@
 //! mesh hides from them is dark: recesses, undersides, and the ground where the feet stand.
 
 mod camera;
+mod depth_map;
+mod font;
 mod ground;
 mod image;
 mod light;
@@ -16,9 +18,11 @@ mod normals;
 mod raster;
 mod scene;
 mod shade;
+mod sheet;
 
 pub use camera::View;
 pub use image::{Image, save_png};
+pub use sheet::{Cell, Layout, sheet};
 
 use crate::mesh::TriMesh;
 use crate::num::Aabb;

@@ -21,11 +21,17 @@ struct Corner {
     near: f32,
 }
 
+/// How much further off a face counts when it is seen from behind, in half diagonals of the
+/// frame: where a face lies twice, once each way round, the proper side is shown.
+const BEHIND: f32 = 1e-4;
+
 /// All faces on the sample grid, sorted into bands.
 pub(super) struct Raster<'a> {
     scene: &'a Scene,
     corners: Vec<Option<Corner>>,
     bands: Vec<Vec<u32>>,
+    /// [`BEHIND`] in terms of nearness.
+    behind: f32,
     /// Samples a band is high.
     rows: usize,
 }
@@ -66,6 +72,7 @@ impl<'a> Raster<'a> {
             scene,
             corners,
             bands: Vec::new(),
+            behind: camera.nearness(BEHIND),
             rows,
         };
         let mut bands = vec![Vec::new(); height.div_ceil(rows)];
@@ -97,7 +104,7 @@ impl<'a> Raster<'a> {
         };
         for &i in &self.bands[index] {
             if let Some(c) = self.corners(i as usize) {
-                band.draw(i, c, rows);
+                band.draw(i, c, rows, self.behind);
             }
         }
         band
@@ -115,14 +122,17 @@ impl<'a> Raster<'a> {
 }
 
 impl Band {
-    fn draw(&mut self, face: u32, c: [Corner; 3], rows: usize) {
+    fn draw(&mut self, face: u32, c: [Corner; 3], rows: usize, behind: f32) {
         let edges = Edges::of(c);
-        if edges.area == 0 {
+        if edges.turn == 0 {
             return;
         }
+        // Rows run down, so a face seen from outside turns the negative way.
+        let back = if edges.turn > 0 { behind } else { 0.0 };
+        let area = edges.turn.abs() as f32;
         let (left, right) = covered(c.map(|c| c.x), self.width);
         let (low, high) = covered(c.map(|c| c.y), self.top + rows);
-        let near = c.map(|c| c.near / edges.area as f32);
+        let near = c.map(|c| (c.near - back) / area);
         for y in low.max(self.top)..high {
             let (mut w, step) = edges.at(left, y);
             let row = (y - self.top) * self.width;
@@ -156,7 +166,8 @@ fn covered(steps: [i32; 3], end: usize) -> (usize, usize) {
 /// each corner, positive inside.
 struct Edges {
     corner: [[i64; 2]; 3],
-    area: i64,
+    /// Twice the signed area.
+    turn: i64,
 }
 
 impl Edges {
@@ -164,7 +175,7 @@ impl Edges {
         let corner = c.map(|c| [i64::from(c.x), i64::from(c.y)]);
         Self {
             corner,
-            area: across(corner[0], corner[1], corner[2]).abs(),
+            turn: across(corner[0], corner[1], corner[2]),
         }
     }
 
@@ -173,7 +184,7 @@ impl Edges {
         let [a, b, c] = self.corner;
         let one = STEPS as i64;
         let p = [x as i64 * one + one / 2, y as i64 * one + one / 2];
-        let sign = across(a, b, c).signum();
+        let sign = self.turn.signum();
         let w = [across(b, c, p), across(c, a, p), across(a, b, p)].map(|w| w * sign);
         let step = [b[1] - c[1], c[1] - a[1], a[1] - b[1]].map(|dy| dy * one * sign);
         (w, step)

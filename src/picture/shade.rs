@@ -1,8 +1,9 @@
 //! From samples to pixels: colour, light, the shadow on the ground.
 
 use super::camera::{Camera, Seen};
+use super::depth_map::Spot;
 use super::ground::Ground;
-use super::light::{Lights, Spot};
+use super::light::Lights;
 use super::raster::{Band, NONE, Raster, centre};
 use super::scene::Scene;
 use super::{Image, Style};
@@ -25,8 +26,12 @@ const TINT: f32 = 0.55;
 const WARM: Vec3 = Vec3::new(0.75, 0.16, 0.06);
 /// What a surface seen at a slant mirrors of the light: rounds off limbs against each other.
 const SHEEN: f32 = 0.10;
+/// Light that reaches every corner: bounces between surfaces. An open floor receives 1.
+const AMBIENT: f32 = 0.05;
+/// Brightness in all.
+const EXPOSURE: f32 = 1.02;
 /// How dark a shadow on the ground may get: 1 is black.
-const SHADOW: f32 = 0.85;
+const SHADOW: f32 = 0.75;
 
 /// The samples of one pixel that lie on one piece of surface.
 #[derive(Clone, Copy)]
@@ -185,7 +190,7 @@ impl Painter<'_> {
         let own = linear(self.style.color);
         let base = if behind { own.lerp(WARM, TINT) } else { own };
         let straight = spot.normal.dot(self.camera.sight(spot.at)).clamp(0.0, 1.0);
-        light * (base + SHEEN * (1.0 - straight).powi(4))
+        (light + AMBIENT) * EXPOSURE * (base + SHEEN * (1.0 - straight).powi(4))
     }
 
     /// The light on the floor under a pixel; 1 where the floor cannot be seen.

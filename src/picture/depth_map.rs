@@ -1,0 +1,188 @@
+//! What one direction of light reaches first.
+
+use super::scene::Scene;
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// Texels along the longer side of a depth map.
+const TEXELS: f32 = 320.0;
+/// Share by which a triangle is taken larger, so that rounding leaves no gap between two.
+const SLACK: f32 = 1e-4;
+/// Meshes of more faces than this cast the shadow of a coarser one: below it nothing is gained.
+const FINE: usize = 100_000;
+/// How far a point is lifted off its surface before it is looked up, in texels. Less, and slanted
+/// surfaces shade themselves in stripes; more, and light leaks into corners.
+const LIFT: f32 = 1.3;
+
+/// A place to light.
+#[derive(Clone, Copy)]
+pub(super) struct Spot {
+    pub at: Vec3,
+    /// Unit normal on the side that is seen.
+    pub normal: Vec3,
+}
+
+/// What casts the shadows: the mesh, with the points within one texel made one when it is fine.
+pub(super) struct Caster<'a> {
+    points: Cow<'a, [Vec3]>,
+    faces: Cow<'a, [[u32; 3]]>,
+    corners: [Vec3; 8],
+}
+
+impl<'a> Caster<'a> {
+    pub fn of(scene: &'a Scene) -> Self {
+        let corners = scene.corners();
+        if scene.faces.len() < FINE {
+            let (points, faces) = (Cow::from(&scene.points), Cow::from(&scene.faces));
+            return Self {
+                points,
+                faces,
+                corners,
+            };
+        }
+        let scale = TEXELS / (scene.max - scene.min).max_element();
+        let cell = |v: u32| {
+            // Unused points may lie anywhere; the casts saturate.
+            let [x, y, z] = ((scene.points[v as usize] - scene.min) * scale).to_array();
+            [x as u32, y as u32, z as u32]
+        };
+        let mut order: Vec<([u32; 3], u32)> = (0..scene.points.len() as u32)
+            .into_par_iter()
+            .map(|v| (cell(v), v))
+            .collect();
+        order.par_sort_unstable();
+        let mut name = vec![0; scene.points.len()];
+        let mut points = Vec::new();
+        for group in order.chunk_by(|a, b| a.0 == b.0) {
+            group
+                .iter()
+                .for_each(|&(_, v)| name[v as usize] = points.len() as u32);
+            points.push(scene.points[group[0].1 as usize]);
+        }
+        let rename = |f: &[u32; 3]| f.map(|v| name[v as usize]);
+        let whole = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
+        let faces: Vec<[u32; 3]> = scene.faces.par_iter().map(rename).filter(whole).collect();
+        Self {
+            points: Cow::from(points),
+            faces: Cow::from(faces),
+            corners,
+        }
+    }
+}
+
+/// How near to the light the first surface lies, on a grid across the light's direction.
+pub(super) struct DepthMap {
+    across: Vec3,
+    along: Vec3,
+    low: Vec2,
+    /// Texels a unit.
+    scale: f32,
+    width: usize,
+    height: usize,
+    depth: Vec<f32>,
+}
+
+impl DepthMap {
+    pub fn new(caster: &Caster, toward: Vec3) -> Self {
+        let (across, along) = toward.any_orthonormal_pair();
+        let flat = |p: Vec3| Vec2::new(p.dot(across), p.dot(along));
+        let corners = caster.corners.map(flat);
+        let low = corners.into_iter().fold(Vec2::INFINITY, Vec2::min);
+        let size = corners.into_iter().fold(Vec2::NEG_INFINITY, Vec2::max) - low;
+        let scale = TEXELS / size.max_element().max(1e-6);
+        // A free texel all round, so that lookups need no care at the border.
+        let [width, height] = (size * scale).to_array().map(|n| n as usize + 3);
+        let low = low - 1.0 / scale;
+        let depth = vec![f32::NEG_INFINITY; width * height];
+        let mut map = Self {
+            across,
+            along,
+            low,
+            scale,
+            width,
+            height,
+            depth,
+        };
+        let at = |p: &Vec3| ((flat(*p) - low) * scale).extend(p.dot(toward));
+        let points: Vec<Vec3> = caster.points.iter().map(at).collect();
+        for f in caster.faces.iter() {
+            map.draw(f.map(|v| points[v as usize]));
+        }
+        map
+    }
+
+    /// Draws a triangle whose x, y are texels (0.5 is the first centre), z its nearness.
+    #[inline]
+    fn draw(&mut self, [a, b, c]: [Vec3; 3]) {
+        // Texels count from 0, so that cutting off the fraction is rounding down.
+        let (low, high) = (a.min(b).min(c) + 0.5, a.max(b).max(c) + 0.5);
+        let (left, top) = (low.x as i32, low.y as i32);
+        let (right, bottom) = (high.x as i32, high.y as i32);
+        if left < right && top < bottom {
+            let right = (right as usize).min(self.width);
+            let bottom = (bottom as usize).min(self.height);
+            self.fill([a, b, c], left as usize..right, top as usize..bottom);
+        }
+    }
+
+    fn fill(&mut self, [a, b, c]: [Vec3; 3], columns: Range<usize>, rows: Range<usize>) {
+        let area = (b - a).truncate().perp_dot((c - a).truncate());
+        if area == 0.0 {
+            return;
+        }
+        // Share of a corner at the first centre, and its steps to the right and down; the third
+        // is what is left.
+        let part = 1.0 / area;
+        let centre = Vec2::new(columns.start as f32 + 0.5, rows.start as f32 + 0.5);
+        let share = |p: Vec3, q: Vec3| {
+            let (side, to) = ((q - p).truncate(), centre - p.truncate());
+            Vec3::new(side.perp_dot(to), -side.y, side.x) * part
+        };
+        let (u, v) = (share(b, c), share(c, a));
+        let depth = u * (a.z - c.z) + v * (b.z - c.z);
+        let right = Vec3::new(u.y, v.y, depth.y);
+        for (i, y) in rows.enumerate() {
+            let down = i as f32;
+            let mut at = Vec3::new(
+                u.x + u.z * down,
+                v.x + v.z * down,
+                c.z + depth.x + depth.z * down,
+            );
+            let row = y * self.width;
+            for texel in &mut self.depth[row + columns.start..row + columns.end] {
+                if at.x >= -SLACK && at.y >= -SLACK && at.x + at.y <= 1.0 + SLACK {
+                    *texel = texel.max(at.z);
+                }
+                at += right;
+            }
+        }
+    }
+
+    /// The share of a spot that the light reaches, smooth between texels, and the distance to
+    /// what stands nearest in its way.
+    #[inline]
+    pub fn open(&self, spot: &Spot, toward: Vec3) -> (f32, f32) {
+        let at = spot.at + (spot.normal + toward * 0.5) * (LIFT / self.scale);
+        let flat = Vec2::new(at.dot(self.across), at.dot(self.along));
+        let place = (flat - self.low) * self.scale - 0.5;
+        let (x, y) = (place.x as i32 as usize, place.y as i32 as usize);
+        if !(place.min_element() >= 0.0 && x + 1 < self.width && y + 1 < self.height) {
+            return (1.0, f32::INFINITY);
+        }
+        let part = place - Vec2::new(x as f32, y as f32);
+        let first = y * self.width + x;
+        let near = at.dot(toward);
+        let gap = |i: usize| self.depth[i] - near;
+        let gaps = [first, first + 1, first + self.width, first + self.width + 1].map(gap);
+        let free = gaps.map(|gap| if gap > 0.0 { 0.0 } else { 1.0 });
+        let far = |gap: f32| if gap > 0.0 { gap } else { f32::INFINITY };
+        let nearest = gaps
+            .into_iter()
+            .fold(f32::INFINITY, |n, gap| n.min(far(gap)));
+        let upper = free[0] + (free[1] - free[0]) * part.x;
+        let lower = free[2] + (free[3] - free[2]) * part.x;
+        (upper + (lower - upper) * part.y, nearest)
+    }
+}
