@@ -6,7 +6,9 @@ use super::watch::Watch;
 use clap::Args;
 use fieldgraft::job::{self, Job};
 use fieldgraft::mesh::TriMesh;
-use fieldgraft::picture::{Image, LARGEST, PictureError, Style, View, render, save_png};
+use fieldgraft::picture::{
+    Cell, Image, LARGEST, Layout, PictureError, Style, View, render, save_png, sheet,
+};
 use std::path::PathBuf;
 
 /// What to draw.
@@ -94,19 +96,28 @@ impl Picture {
         Ok(save_png(&self.output, &image, self.force)?)
     }
 
-    /// All meshes, each in a frame of its own.
+    /// All meshes, each in a frame of its own, over their names.
     fn sheet(&self, meshes: &[TriMesh], style: &Style) -> Result<Image, PictureError> {
-        let columns = ((meshes.len() as f64).sqrt().ceil() as u32).max(1);
-        let rows = (meshes.len() as u32).div_ceil(columns);
-        let [w, h] = style.size;
-        let mut all = Image::filled(
-            w.saturating_mul(columns),
-            h.saturating_mul(rows),
-            style.background,
-        )?;
-        for (i, mesh) in (0u32..).zip(meshes) {
-            all.paste(&render(mesh, style)?, i % columns * w, i / columns * h);
+        let mut cells = Vec::with_capacity(meshes.len());
+        for (mesh, file) in meshes.iter().zip(&self.meshes) {
+            let caption = file
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            cells.push(Cell {
+                image: Some(render(mesh, style)?),
+                caption,
+            });
         }
-        Ok(all)
+        // a sheet about as wide as it is high
+        let columns = (meshes.len() as f64).sqrt().ceil() as usize;
+        sheet(
+            &cells,
+            &Layout {
+                columns,
+                ..Layout::default()
+            },
+        )
     }
 }

@@ -5,6 +5,7 @@ use super::failure::Failure;
 use super::watch::Watch;
 use fieldgraft::iso::Mesher;
 use fieldgraft::job::Job;
+use fieldgraft::mesh::check_output;
 use fieldgraft::picture::Style;
 use fieldgraft::recipe::{GridEntry, MesherEntry, Recipe, Source};
 use fieldgraft::run::{
@@ -40,10 +41,7 @@ pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failur
     } = work;
     let frames = frames(&recipe);
     if !making.dry_run {
-        names.check(&frames, making.force)?;
-        for (hybrid, t) in &frames {
-            fieldgraft::mesh::check_output(&names.mesh(hybrid, *t), making.force)?;
-        }
+        check_outputs(&names, &frames, making.force)?;
     }
     let mesher = mesher(recipe.output.mesher);
     let recipe_hash = sha256(source.text().as_bytes());
@@ -84,6 +82,23 @@ pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failur
     let mut told = |f: &FrameReport| tell(f, watch);
     let report = run::run(&scene, &settings, report, watch, &mut told)?;
     finish(&report, making, watch)
+}
+
+/// Whether every result can be written, before anything is made.
+fn check_outputs(names: &Names, frames: &[(String, f64)], force: bool) -> Result<(), Failure> {
+    names.check(frames, force)?;
+    for (hybrid, t) in frames {
+        let path = names.mesh(hybrid, *t);
+        let there = path
+            .parent()
+            .is_none_or(|p| p.as_os_str().is_empty() || p.is_dir());
+        match path.file_name() {
+            // a folder still to be made holds nothing; only the name can be wrong
+            Some(name) if !there => check_output(Path::new(name), true)?,
+            _ => check_output(&path, force)?,
+        }
+    }
+    Ok(())
 }
 
 /// Prints the report and judges it.
