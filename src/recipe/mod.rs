@@ -22,16 +22,20 @@ pub use method::{
 };
 pub use near::{did_you_mean, nearest};
 pub use output::{GridEntry, MesherEntry, OutputEntry};
-pub use shapes::{LengthUnit, Place, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis};
+pub use shapes::{
+    LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,
+};
 pub use solid::{
     BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Mirror, Op, Part, Primitive, PrismShape,
     Solid, SolidKind,
 };
+pub(crate) use source::join;
 pub use source::{Problem, RecipeError, Source};
 pub use time::{TimeFn, Times};
 pub use value::{Auto, PlainOr};
 
 use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
 use serde::de::value::{Error as WordError, StrDeserializer};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -102,7 +106,11 @@ impl Recipe {
             if name.is_empty() {
                 return Err(Problem::new("shapes", "a shape has an empty name"));
             }
-            shape.validate(&source::join("shapes", name))?;
+            let at = source::join("shapes", name);
+            shape.validate(&at)?;
+            if let PlainOr::Table(PlaceLike { like }) = &shape.place {
+                self.stands_alone(like, &format!("{at}.place.like"))?;
+            }
         }
         self.grid.validate()?;
         features::validate(&self.features, &self.shapes)?;
@@ -128,6 +136,26 @@ impl Recipe {
     }
 }
 
+impl Recipe {
+    /// Whether there is a shape of that name whose place depends on no other.
+    fn stands_alone(&self, name: &str, at: &str) -> Result<(), Problem> {
+        let Some(shape) = self.shapes.get(name) else {
+            let hint = did_you_mean(name, self.shapes.keys().map(String::as_str));
+            return Err(Problem::new(
+                at,
+                format!("no shape is called `{name}`{hint}"),
+            ));
+        };
+        match shape.place {
+            PlainOr::Plain(_) => Ok(()),
+            PlainOr::Table(_) => {
+                let why = format!("`{name}` stands like another shape itself; name that one");
+                Err(Problem::new(at, why))
+            }
+        }
+    }
+}
+
 /// Reads a solid file (`kind = "solid"`); `file` names it in errors and tells TOML from JSON.
 ///
 /// # Errors
@@ -146,7 +174,7 @@ pub fn parse_solid(text: &str, file: &Path) -> Result<Solid, RecipeError> {
 ///
 /// # Errors
 /// An unknown word, with the nearest known one.
-pub fn word<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T, String> {
+pub fn word<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     T::deserialize(StrDeserializer::<WordError>::new(text))
         .map_err(|e| source::explain(&e.to_string()))
 }

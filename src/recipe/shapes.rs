@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// Where a shape comes from and how it stands: exactly one of `mesh` and `solid`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShapeEntry {
     /// A mesh file: OBJ, STL, PLY, GLB or glTF; relative to the recipe.
@@ -32,9 +32,10 @@ pub struct ShapeEntry {
     /// How inside and outside are told apart.
     #[serde(default, skip_serializing_if = "is_default")]
     pub sign: SignEntry,
-    /// `keep`, or `floor`: centred over the origin with its lowest point at z = 0.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub place: Place,
+    /// `keep`, `floor` (centred over the origin, lowest point at z = 0) or `{ like = "other" }`
+    /// (its box's centre and floor where those of another shape are).
+    #[serde(default = "keep", skip_serializing_if = "is_keep")]
+    pub place: PlainOr<Place, PlaceLike>,
     /// Turn about z, degrees, before placing.
     #[serde(default, skip_serializing_if = "is_default")]
     pub turn_deg: f64,
@@ -100,6 +101,22 @@ pub enum SignEntry {
     Unsigned,
 }
 
+/// Another shape to stand like.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaceLike {
+    /// Its name; it must not itself stand like another.
+    pub like: String,
+}
+
+fn keep() -> PlainOr<Place, PlaceLike> {
+    PlainOr::Plain(Place::Keep)
+}
+
+fn is_keep(place: &PlainOr<Place, PlaceLike>) -> bool {
+    *place == keep()
+}
+
 /// Where a shape is put.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -120,6 +137,23 @@ impl ThickenEntry {
                 which: ThickenWhich::Open,
             },
             PlainOr::Table(t) => *t,
+        }
+    }
+}
+
+impl Default for ShapeEntry {
+    fn default() -> Self {
+        Self {
+            mesh: None,
+            solid: None,
+            up: None,
+            unit: None,
+            height: None,
+            thicken: None,
+            sign: SignEntry::Winding,
+            place: keep(),
+            turn_deg: 0.0,
+            shift: [0.0; 3],
         }
     }
 }

@@ -28,7 +28,7 @@ impl Problem {
 
 /// A recipe or solid that cannot be used: file, line, key, cause.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}{}: {}{why}", .file.display(), line_tag(.line), colon(.at))]
+#[error("{}{}{why}", place(.file, .line), colon(.at))]
 pub struct RecipeError {
     /// The file as it was named.
     pub file: PathBuf,
@@ -40,8 +40,13 @@ pub struct RecipeError {
     pub why: String,
 }
 
-fn line_tag(line: &Option<usize>) -> String {
-    line.map_or_else(String::new, |n| format!(":{n}"))
+/// `file:line: `, as far as they are known.
+fn place(file: &Path, line: &Option<usize>) -> String {
+    match line {
+        _ if file.as_os_str().is_empty() => String::new(),
+        Some(n) => format!("{}:{n}: ", file.display()),
+        None => format!("{}: ", file.display()),
+    }
 }
 
 fn colon(at: &str) -> String {
@@ -84,6 +89,23 @@ impl Source {
             source.read_toml()
         }
         .map(|t| (t, source))
+    }
+
+    /// A recipe that was never written down, such as a command line: no file, no lines.
+    pub fn unwritten() -> Self {
+        Self {
+            file: PathBuf::new(),
+            text: String::new(),
+            places: Vec::new(),
+        }
+    }
+
+    /// A text that a program wrote for its user: its keys and lines are nobody's.
+    pub fn unwritten_with(text: String) -> Self {
+        Self {
+            text,
+            ..Self::unwritten()
+        }
     }
 
     /// The name the text was given.
@@ -198,7 +220,7 @@ impl Source {
 }
 
 /// `above.name`, with the name in quotes where it is not a bare key.
-pub(super) fn join(above: &str, name: &str) -> String {
+pub(crate) fn join(above: &str, name: &str) -> String {
     let bare = name
         .chars()
         .all(|c| c.is_alphanumeric() || c == '_' || c == '-');

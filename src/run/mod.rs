@@ -1,1 +1,167 @@
-//! run (to come).
+//! Running a scene: each frame becomes a mesh, a file, perhaps a picture, and a line in the
+//! report that lies beside them.
+
+mod files;
+mod frame;
+mod predict;
+mod report;
+mod system;
+
+pub use files::{Names, place_text, time_word};
+pub use frame::{FrameResult, Work, make};
+pub use predict::{COARSER, Prediction, predict, predict_one, probe};
+pub use report::{FrameReport, Report, Seconds};
+pub use system::{available_memory, peak_memory};
+
+use crate::iso::Mesher;
+use crate::job::{Cancelled, Job};
+use crate::mesh::{self, MeshError};
+use crate::morph::MorphError;
+use crate::picture::{PictureError, Style, render, save_png};
+use crate::scene::Scene;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Why a run failed.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The work was stopped.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A morph that cannot be made.
+    #[error(transparent)]
+    Morph(#[from] MorphError),
+    /// A mesh that cannot be written.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A picture that cannot be made or written.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// Two results would be one file.
+    #[error("{}: {count} results would be written to this one file; {cure}", file.display())]
+    Collision {
+        /// The file.
+        file: PathBuf,
+        /// How many.
+        count: usize,
+        /// What to change.
+        cure: String,
+    },
+    /// An output that is there already.
+    #[error("{}: exists already; overwrite it with --force", .0.display())]
+    Exists(PathBuf),
+    /// An output that cannot be placed.
+    #[error("{}: cannot be written: {why}", file.display())]
+    Place {
+        /// The file or folder.
+        file: PathBuf,
+        /// What the system said.
+        why: std::io::Error,
+    },
+}
+
+/// How to run.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Where results go.
+    pub names: Names,
+    /// Which mesher.
+    pub mesher: Mesher,
+    /// Whether files may be overwritten.
+    pub force: bool,
+    /// Whether to count self-intersections.
+    pub verify: bool,
+    /// How pictures look.
+    pub style: Style,
+    /// SHA-256 of the recipe's text.
+    pub recipe_hash: String,
+}
+
+/// Runs every frame of a scene and writes the report.
+///
+/// A frame that fails is reported and does not stop the others; being cancelled does.
+///
+/// # Errors
+/// Outputs that collide or exist, a report that cannot be written, cancelled.
+pub fn run(
+    scene: &Scene,
+    settings: &Settings,
+    mut report: Report,
+    job: &dyn Job,
+    told: &mut dyn FnMut(&FrameReport),
+) -> Result<Report, RunError> {
+    let start = Instant::now();
+    for variant in &scene.variants {
+        for &t in &variant.times {
+            let work = Work {
+                variant: &variant.name,
+                t,
+                lattice: scene.lattice,
+                mesher: settings.mesher,
+                crumbs: variant.crumbs,
+                verify: settings.verify,
+            };
+            let made = match variant.morph(t) {
+                Ok(morph) => make(&work, &|job| morph.at(t, job), job)?,
+                Err(e) => FrameResult::failed(&work, e.to_string()),
+            };
+            let mut frame = made.report;
+            frame.mean_volume(variant.mean_volume(t));
+            if let Some(mesh) = &made.mesh {
+                put(&mut frame, mesh, settings, job)?;
+            }
+            told(&frame);
+            report.frames.push(frame);
+        }
+    }
+    report.seconds_total += start.elapsed().as_secs_f64();
+    report.peak_memory_mb = peak_memory().map(|b| b as f64 / 1e6);
+    place_text(&settings.names.report(), &report.to_json(), settings.force)?;
+    Ok(report)
+}
+
+/// Writes the mesh and the picture of a frame.
+fn put(
+    frame: &mut FrameReport,
+    mesh: &mesh::TriMesh,
+    settings: &Settings,
+    job: &dyn Job,
+) -> Result<(), RunError> {
+    crate::job::check(job)?;
+    let path = settings.names.mesh(&frame.hybrid, frame.t);
+    job.stage("write");
+    let start = Instant::now();
+    files::folder_of(&path)?;
+    let note = format!(
+        "recipe={}",
+        settings.recipe_hash.get(..16).unwrap_or_default()
+    );
+    match mesh::write(&path, mesh, &note, settings.force) {
+        Ok(bytes) => {
+            frame.file = Some(path.display().to_string());
+            frame.file_bytes = Some(bytes);
+        }
+        Err(e) => frame.error = Some(e.to_string()),
+    }
+    frame.seconds.write = start.elapsed().as_secs_f64();
+    if let Some(path) = settings.names.picture(&frame.hybrid, frame.t) {
+        job.stage("picture");
+        let start = Instant::now();
+        files::folder_of(&path)?;
+        let drawn = render(mesh, &settings.style);
+        match drawn.and_then(|image| save_png(&path, &image, settings.force)) {
+            Ok(()) => frame.picture = Some(path.display().to_string()),
+            Err(e) => frame.error = Some(e.to_string()),
+        }
+        frame.seconds.picture = start.elapsed().as_secs_f64();
+    }
+    Ok(())
+}
+
+/// The folder of a path, the current one for a bare name.
+pub(crate) fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    }
+}

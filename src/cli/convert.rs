@@ -1,0 +1,212 @@
+//! `convert`: any mesh, or a solid, into a clean watertight mesh.
+
+use super::failure::Failure;
+use super::inputs::{Fineness, Reading};
+use super::watch::Watch;
+use super::{Making, npy, steps};
+use clap::Args;
+use fieldgraft::check::{Options, inspect};
+use fieldgraft::iso::Mesher;
+use fieldgraft::job::{self, Job};
+use fieldgraft::mesh::{check_output, write};
+use fieldgraft::recipe::{GridEntry, RecipeError};
+use fieldgraft::run::{self, FrameReport, Names, Report, Work, predict_one};
+use fieldgraft::scene::{SceneError, Single, sha256};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What to convert.
+#[derive(Args)]
+pub struct Convert {
+    /// A mesh (OBJ, STL, PLY, GLB, glTF) or a solid (`.toml`)
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// A mesh (STL, OBJ, PLY, GLB), or a field: the dense samples as `.npy`, with a `.json` beside
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
+    fineness: Fineness,
+    /// Write the triangles as they are: the mesh itself, or the raw shells of a solid's parts
+    #[arg(long, conflicts_with_all = ["resolution", "voxel", "thicken", "sign"])]
+    shells: bool,
+    /// Drop loose pieces below this share of the volume
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
+    crumbs: f64,
+    #[command(flatten)]
+    making: Making,
+}
+
+impl Convert {
+    /// Converts.
+    pub fn run(self, watch: &Watch) -> Result<(), Failure> {
+        let start = Instant::now();
+        let field_out = self
+            .output
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("npy"));
+        if !(0.0..1.0).contains(&self.crumbs) {
+            return Err(Failure::usage(
+                "--crumbs: expected a share of the volume, 0 to below 1",
+            ));
+        }
+        if !self.making.dry_run {
+            if field_out {
+                npy::check_output(&self.output, self.making.force)?;
+            } else {
+                check_output(&self.output, self.making.force)?;
+            }
+        }
+        let Some(entry) = self.reading.shapes(&[&self.input])?.pop() else {
+            return Err(Failure::usage("nothing to convert"));
+        };
+        let grid = GridEntry {
+            resolution: self.fineness.resolution,
+            voxel: self.fineness.voxel,
+            ..GridEntry::default()
+        };
+        watch.stage("read");
+        let single = Single::open("input", entry, &grid, Path::new("")).map_err(plain)?;
+        watch.say(single.note().trim_start_matches("input: "));
+        if self.shells {
+            return self.write_shells(&single, watch);
+        }
+        let prediction = predict_one(single.area(), &single.lattice);
+        let limit = steps::limit(&self.making);
+        if self.making.dry_run {
+            steps::tell_prediction(&prediction, &self.making, watch)?;
+            return steps::refuse(&prediction, limit);
+        }
+        steps::refuse(&prediction, limit)?;
+        let (lattice, input) = (single.lattice, single.input().cloned());
+        let mut notes = vec![single.note().to_owned()];
+        let (field, found) = single.field(watch).map_err(plain)?;
+        found
+            .iter()
+            .for_each(|n| watch.say(n.trim_start_matches("input: ")));
+        notes.extend(found);
+        let seconds = start.elapsed().as_secs_f64();
+        if field_out {
+            return npy::write(&self.output, &*field, lattice, self.making.force, watch);
+        }
+        let work = Work {
+            variant: "",
+            t: 0.0,
+            lattice,
+            mesher: Mesher::Cone,
+            crumbs: self.crumbs,
+            verify: self.making.verify || self.making.strict,
+        };
+        let made = run::make(&work, &|_| Ok(field.clone()), watch)?;
+        let mut frame = made.report;
+        if let Some(mesh) = &made.mesh {
+            self.write_mesh(&mut frame, mesh, watch)?;
+        }
+        steps::tell(&frame, watch);
+        let report = Report {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            recipe_sha256: sha256(b""),
+            inputs: input.into_iter().collect(),
+            threads: rayon::current_num_threads(),
+            seconds_shapes: seconds,
+            seconds_total: start.elapsed().as_secs_f64(),
+            peak_memory_mb: run::peak_memory().map(|b| b as f64 / 1e6),
+            notes,
+            frames: vec![frame],
+            ..Report::default()
+        };
+        let beside = beside(&self.output);
+        // the mesh is there already; its report belongs to it and follows it
+        run::place_text(&beside, &report.to_json(), true)?;
+        steps::finish(&report, &self.making, watch)
+    }
+
+    fn write_mesh(
+        &self,
+        frame: &mut FrameReport,
+        mesh: &fieldgraft::mesh::TriMesh,
+        watch: &Watch,
+    ) -> Result<(), Failure> {
+        job::check(watch)?;
+        watch.stage("write");
+        let start = Instant::now();
+        let bytes = write(&self.output, mesh, "", self.making.force)?;
+        frame.seconds.write = start.elapsed().as_secs_f64();
+        frame.file = Some(self.output.display().to_string());
+        frame.file_bytes = Some(bytes);
+        Ok(())
+    }
+
+    fn write_shells(&self, single: &Single, watch: &Watch) -> Result<(), Failure> {
+        let mesh = single.shells();
+        if self.making.dry_run {
+            return watch.put(&format!("triangles  {}", mesh.faces.len()));
+        }
+        job::check(watch)?;
+        write(&self.output, &mesh, "", self.making.force)?;
+        let health = inspect(
+            &mesh,
+            &Options {
+                self_intersections: false,
+            },
+        );
+        watch.say(&format!(
+            "{}: {} triangles as they are, {} shells, closed {}",
+            self.output.display(),
+            health.triangles,
+            health.components,
+            if health.closed { "yes" } else { "no" }
+        ));
+        if self.making.json {
+            watch.put(&serde_json::to_string_pretty(&health).unwrap_or_default())?;
+        }
+        Ok(())
+    }
+}
+
+/// The report beside a mesh: `chair.stl` -> `chair.run.json`.
+pub fn beside(output: &Path) -> PathBuf {
+    output.with_extension("run.json")
+}
+
+/// An error without the key of a recipe that the user never wrote.
+pub fn plain(e: SceneError) -> Failure {
+    match e {
+        SceneError::Bad(RecipeError {
+            file,
+            line,
+            at,
+            why,
+        }) => {
+            let invented = file.as_os_str().is_empty() && at.starts_with("shapes.");
+            let at = if invented { String::new() } else { at };
+            RecipeError {
+                file,
+                line,
+                at,
+                why,
+            }
+            .into()
+        }
+        SceneError::Cancelled(c) => c.into(),
+    }
+}
+
+/// Names of results for a template that stands on the command line.
+pub fn names(output: &str, picture: Option<String>) -> Names {
+    let bare = output.replace("{t}", "").replace("{name}", "");
+    let report = beside(Path::new(&bare)).display().to_string();
+    let folder = PathBuf::new();
+    // `hybrid-{t}.stl` has its report in `hybrid.run.json`
+    let report = report
+        .replace("-.run.json", ".run.json")
+        .replace("_.run.json", ".run.json");
+    Names {
+        folder,
+        mesh: output.to_owned(),
+        picture,
+        report,
+        unnamed: String::new(),
+    }
+}

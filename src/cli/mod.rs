@@ -1,0 +1,119 @@
+//! The command line: arguments -> calls, messages, exit codes. One file a command.
+//!
+//! stdout carries data, stderr messages. Exit codes: 0 done; 1 the run failed; 2 usage; 3 bad
+//! input; 4 made, but not printable, with `--strict`; 5 over a limit; 130 interrupted.
+
+mod check;
+mod convert;
+mod failure;
+mod inputs;
+mod morph;
+mod npy;
+mod picture;
+mod run;
+mod shell;
+mod steps;
+mod watch;
+
+use clap::{Args, Parser, Subcommand};
+use std::process::ExitCode;
+use watch::Watch;
+
+/// Grafts shapes inside signed distance fields: meshes in, printable hybrids out.
+///
+/// Lengths are millimetres, Z is up, t runs from 0 to 1.
+#[derive(Parser)]
+#[command(name = "fieldgraft", version, max_term_width = 100)]
+struct Cli {
+    #[command(flatten)]
+    common: Common,
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// What every command takes.
+#[derive(Args, Clone, Debug)]
+struct Common {
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Say more: timings and what was found
+    #[arg(short, long, global = true)]
+    verbose: bool,
+    /// Threads to use; all cores by default
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    threads: Option<u32>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Morph two meshes or more into hybrids, without a recipe
+    Morph(Box<morph::Morph>),
+    /// Make what a recipe says
+    Run(Box<run::Run>),
+    /// Tell whether meshes can be printed: closed, manifold, free of self-contact, of one piece
+    Check(check::Check),
+    /// Turn any mesh, or a solid, into a clean watertight mesh
+    Convert(Box<convert::Convert>),
+    /// Draw meshes: one picture, or a sheet of many
+    Picture(picture::Picture),
+    /// Print the JSON Schema of the recipe
+    Schema,
+    /// Print the completions of a shell
+    Completions(shell::Completions),
+    /// Print the manual page
+    Man(shell::Man),
+}
+
+/// What commands that make files take.
+#[derive(Args, Clone, Debug)]
+struct Making {
+    /// Overwrite what is there
+    #[arg(long)]
+    force: bool,
+    /// Say how large the work would be, and stop
+    #[arg(long)]
+    dry_run: bool,
+    /// Refuse work that would need more memory, such as 500M or 2G; by default 80% of what is free
+    #[arg(long, value_name = "SIZE", value_parser = inputs::size)]
+    max_memory: Option<u64>,
+    /// Fail (4) when a result cannot be printed; counts self-intersections too
+    #[arg(long)]
+    strict: bool,
+    /// Count self-intersections, and search for what is smaller than a cell
+    #[arg(long)]
+    verify: bool,
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command and gives its exit code.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    if let Some(n) = cli.common.threads {
+        // the pool is made here first, so this cannot fail
+        let _ = rayon::ThreadPoolBuilder::new()
+            .num_threads(n as usize)
+            .build_global();
+    }
+    let watch = Watch::new(&cli.common);
+    let done = match cli.command {
+        Command::Morph(c) => c.run(&watch),
+        Command::Run(c) => c.run(&watch),
+        Command::Check(c) => c.run(&watch),
+        Command::Convert(c) => c.run(&watch),
+        Command::Picture(c) => c.run(&watch),
+        Command::Schema => shell::schema(),
+        Command::Completions(c) => c.run(),
+        Command::Man(c) => c.run(),
+    };
+    watch.close();
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(failure.code)
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! `morph`: the quick road from meshes to hybrids. It makes a recipe and runs it.
+
+use super::failure::Failure;
+use super::inputs::{Fineness, Reading};
+use super::steps::{self, Task};
+use super::watch::Watch;
+use super::{Making, convert};
+use clap::{Args, ValueEnum};
+use fieldgraft::mesh::check_output;
+use fieldgraft::recipe::{
+    GridEntry, MethodEntry, MorphEntry, OutputEntry, PlaceLike, PlainOr, Recipe, ShapeEntry,
+    Source, Times, VERSION, word,
+};
+use fieldgraft::run;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What to morph.
+#[derive(Args)]
+pub struct Morph {
+    /// Two meshes or more (OBJ, STL, PLY, GLB, glTF), or solids (`.toml`)
+    #[arg(required = true, num_args = 2.., value_name = "MESH")]
+    inputs: Vec<PathBuf>,
+    /// Where the hybrid goes: STL, OBJ, PLY or GLB; `{t}` stands for the time
+    #[arg(short, long, value_name = "OUT")]
+    output: String,
+    /// Times in [0, 1]: numbers, or ranges such as 0:1:0.125; repeatable; by default 0.5
+    #[arg(short, value_name = "T", value_parser = times, action = clap::ArgAction::Append)]
+    t: Vec<Times>,
+    /// Weights of the meshes instead of a time, such as 2,1,1
+    #[arg(long, value_delimiter = ',', value_name = "W", conflicts_with = "t")]
+    weights: Vec<f64>,
+    /// How: linear, or space-time (the default)
+    #[arg(long, value_name = "METHOD", value_parser = method)]
+    method: Option<MethodEntry>,
+    /// How the meshes are laid over each other: box (all stand where the first does) or none
+    #[arg(long, value_enum, default_value_t = Align::Box)]
+    align: Align,
+    #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
+    fineness: Fineness,
+    /// Also a picture: PNG, with `{t}` where there are several times
+    #[arg(long, value_name = "PNG")]
+    picture: Option<String>,
+    /// Drop loose pieces below this share of the volume
+    #[arg(long, value_name = "SHARE")]
+    crumbs: Option<f64>,
+    /// Also write the recipe that this command stands for
+    #[arg(long, value_name = "TOML")]
+    recipe: Option<PathBuf>,
+    #[command(flatten)]
+    making: Making,
+}
+
+/// How meshes are laid over each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Align {
+    /// Their boxes' centres and floors agree with the first one's
+    Box,
+    /// They stay where they are
+    None,
+}
+
+fn times(text: &str) -> Result<Times, String> {
+    text.parse()
+}
+
+fn method(text: &str) -> Result<MethodEntry, String> {
+    match word(text)? {
+        m @ (MethodEntry::Linear | MethodEntry::SpaceTime | MethodEntry::Auto) => Ok(m),
+        _ => Err("this method needs features; write a recipe for `fieldgraft run`".to_owned()),
+    }
+}
+
+impl Morph {
+    /// Makes the hybrids.
+    pub fn run(self, watch: &Watch) -> Result<(), Failure> {
+        let recipe = self.recipe()?;
+        let text = toml::to_string(&recipe)
+            .map_err(|e| Failure::new(Failure::FAILED, format!("recipe: {e}")))?;
+        if let Some(path) = self.recipe.as_ref().filter(|_| !self.making.dry_run) {
+            run::place_text(path, &text, self.making.force)?;
+        }
+        if !self.making.dry_run {
+            check_output(Path::new(&self.output.replace("{t}", "0")), true)?;
+        }
+        let task = Task {
+            source: Source::unwritten_with(text),
+            beside: Path::new(""),
+            names: convert::names(&self.output, self.picture.clone()),
+            file: None,
+            recipe,
+        };
+        steps::make(task, &self.making, watch)
+    }
+
+    /// The recipe this command line stands for.
+    fn recipe(&self) -> Result<Recipe, Failure> {
+        let times: Vec<f64> = self.t.iter().flat_map(|t| t.0.iter().copied()).collect();
+        let template = |name: &str| name.contains("{t}");
+        let several = times.len() > 1;
+        if several && !(template(&self.output) && self.picture.as_deref().is_none_or(template)) {
+            let why = format!("{} times need {{t}} in each output's name", times.len());
+            return Err(Failure::usage(why));
+        }
+        if !times.is_empty() && self.inputs.len() > 2 {
+            return Err(Failure::usage("-t is for two meshes; more need --weights"));
+        }
+        let names = names(self.inputs.len());
+        let mut shapes: BTreeMap<String, ShapeEntry> = names
+            .iter()
+            .cloned()
+            .zip(self.reading.shapes(&self.inputs)?)
+            .collect();
+        if self.align == Align::Box {
+            for name in &names[1..] {
+                if let Some(shape) = shapes.get_mut(name) {
+                    shape.place = PlainOr::Table(PlaceLike {
+                        like: names[0].clone(),
+                    });
+                }
+            }
+        }
+        let mut morph = MorphEntry {
+            method: Some(self.method.unwrap_or(MethodEntry::SpaceTime)),
+            weights: self.rows(&names)?,
+            ..MorphEntry::default()
+        };
+        match <[String; 2]>::try_from(names) {
+            Ok(pair) => morph.between = Some(pair),
+            Err(all) => morph.among = Some(all),
+        }
+        if morph.weights.is_empty() && self.inputs.len() == 2 {
+            morph.t = Some(Times(if times.is_empty() { vec![0.5] } else { times }));
+        }
+        let recipe = Recipe {
+            version: VERSION,
+            grid: GridEntry {
+                resolution: self.fineness.resolution,
+                voxel: self.fineness.voxel,
+                ..GridEntry::default()
+            },
+            shapes,
+            morph,
+            output: OutputEntry {
+                crumbs: self.crumbs,
+                ..OutputEntry::default()
+            },
+            ..Recipe::default()
+        };
+        recipe
+            .validate()
+            .map_err(|p| Failure::usage(p.to_string()))?;
+        Ok(recipe)
+    }
+
+    fn rows(&self, names: &[String]) -> Result<fieldgraft::recipe::Weights, Failure> {
+        if self.weights.is_empty() {
+            return Ok(BTreeMap::new());
+        }
+        if self.weights.len() != names.len() {
+            let (got, of) = (self.weights.len(), names.len());
+            return Err(Failure::usage(format!(
+                "--weights: {got} weights for {of} meshes"
+            )));
+        }
+        let row = names
+            .iter()
+            .cloned()
+            .zip(self.weights.iter().copied())
+            .collect();
+        Ok(BTreeMap::from([("default".to_owned(), row)]))
+    }
+}
+
+/// `a`, `b`, ... `z`, then `s27` and on.
+fn names(count: usize) -> Vec<String> {
+    let letter = |i: usize| {
+        u8::try_from(i)
+            .ok()
+            .filter(|i| *i < 26)
+            .map(|i| (b'a' + i) as char)
+    };
+    (0..count)
+        .map(|i| letter(i).map_or_else(|| format!("s{}", i + 1), String::from))
+        .collect()
+}

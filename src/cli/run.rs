@@ -1,0 +1,263 @@
+//! `run`: makes what a recipe says.
+
+use super::Making;
+use super::failure::Failure;
+use super::steps::{self, Task};
+use super::watch::Watch;
+use clap::{Args, ValueEnum};
+use fieldgraft::recipe::{GridEntry, Recipe, RecipeError, Source, Times};
+use fieldgraft::run::Names;
+use std::path::{Component, Path, PathBuf};
+
+/// What to run.
+#[derive(Args)]
+pub struct Run {
+    /// The recipe, TOML or JSON
+    #[arg(value_name = "RECIPE")]
+    recipe: PathBuf,
+    /// Folder for the results; by default the current one
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// How finely: as the recipe says, or its preview
+    #[arg(long, value_enum, default_value_t = Profile::Final)]
+    profile: Profile,
+    /// Times instead of the recipe's: numbers, or ranges such as 0:1:0.125; repeatable
+    #[arg(short, value_name = "T", value_parser = times, action = clap::ArgAction::Append)]
+    t: Vec<Times>,
+    /// Only these hybrids, by name; repeatable
+    #[arg(long, value_name = "NAME")]
+    only: Vec<String>,
+    /// Change a key, such as --set grid.resolution=128 or --set 'morph.inner="erode"'; repeatable
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    #[command(flatten)]
+    making: Making,
+}
+
+/// How finely to run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Profile {
+    /// Coarse and quick
+    Preview,
+    /// As the recipe says
+    Final,
+}
+
+fn times(text: &str) -> Result<Times, String> {
+    text.parse()
+}
+
+impl Run {
+    /// Makes everything.
+    pub fn run(self, watch: &Watch) -> Result<(), Failure> {
+        let text = std::fs::read_to_string(&self.recipe).map_err(|e| {
+            Failure::input(format!("{}: cannot be read: {e}", self.recipe.display()))
+        })?;
+        let (mut recipe, source) = parse(&text, &self.recipe, &self.set)?;
+        self.adjust(&mut recipe)?;
+        let names = self.names(&recipe, &source)?;
+        let beside = self.recipe.parent().unwrap_or(Path::new(""));
+        let file = Some(self.recipe.display().to_string());
+        steps::make(
+            Task {
+                recipe,
+                source,
+                beside,
+                names,
+                file,
+            },
+            &self.making,
+            watch,
+        )
+    }
+
+    /// What the command line overrides.
+    fn adjust(&self, recipe: &mut Recipe) -> Result<(), Failure> {
+        if self.profile == Profile::Preview {
+            let resolution = recipe.grid.preview.unwrap_or(GridEntry::PREVIEW);
+            recipe.grid.resolution = Some(resolution);
+            recipe.grid.voxel = None;
+        }
+        if !self.t.is_empty() {
+            let t = Times(self.t.iter().flat_map(|t| t.0.iter().copied()).collect());
+            recipe.morph.t = Some(t.clone());
+            recipe
+                .hybrids
+                .iter_mut()
+                .for_each(|h| h.t = Some(t.clone()));
+        }
+        for name in &self.only {
+            if !recipe.hybrids.iter().any(|h| h.name == *name) {
+                let known = recipe.hybrids.iter().map(|h| h.name.as_str());
+                let hint = fieldgraft::recipe::did_you_mean(name, known);
+                return Err(Failure::usage(format!(
+                    "--only: no hybrid is called `{name}`{hint}"
+                )));
+            }
+        }
+        if !self.only.is_empty() {
+            recipe.hybrids.retain(|h| self.only.contains(&h.name));
+        }
+        Ok(())
+    }
+
+    /// Where the results go.
+    fn names(&self, recipe: &Recipe, source: &Source) -> Result<Names, Failure> {
+        let hybrids = !recipe.hybrids.is_empty();
+        let several = recipe
+            .variants()
+            .iter()
+            .any(|(_, v)| v.t.as_ref().is_some_and(|t| t.0.len() > 1));
+        let default = match (hybrids, several) {
+            (true, true) => "{name}-{t}.stl",
+            (true, false) => "{name}.stl",
+            (false, true) => "hybrid-{t}.stl",
+            (false, false) => "hybrid.stl",
+        };
+        let mesh = recipe
+            .output
+            .mesh
+            .clone()
+            .unwrap_or_else(|| default.to_owned());
+        let picture = recipe.output.picture.clone();
+        for (key, name) in [("mesh", Some(&mesh)), ("picture", picture.as_ref())] {
+            if name.is_some_and(|n| !stays_inside(n)) {
+                let why = "leaves the output folder; give a plain relative name";
+                let problem = fieldgraft::recipe::Problem::new(format!("output.{key}"), why);
+                return Err(source.locate(problem).into());
+            }
+        }
+        let unnamed = if recipe.name.is_empty() {
+            "hybrid"
+        } else {
+            &recipe.name
+        };
+        Ok(Names {
+            folder: self.output.clone().unwrap_or_default(),
+            mesh,
+            picture,
+            report: "run.json".to_owned(),
+            unnamed: unnamed.to_owned(),
+        })
+    }
+}
+
+/// Whether a recipe's file name stays in the folder it is put into.
+fn stays_inside(name: &str) -> bool {
+    Path::new(name)
+        .components()
+        .all(|c| matches!(c, Component::Normal(_) | Component::CurDir))
+}
+
+/// Reads the recipe, with keys changed where asked.
+fn parse(text: &str, file: &Path, set: &[String]) -> Result<(Recipe, Source), RecipeFailure> {
+    let read = Recipe::parse(text, file)?;
+    if set.is_empty() {
+        return Ok(read);
+    }
+    let mut tree =
+        toml::Table::try_from(&read.0).map_err(|e| RecipeFailure::Usage(format!("--set: {e}")))?;
+    for change in set {
+        change_key(&mut tree, change)
+            .map_err(|why| RecipeFailure::Usage(format!("--set: {why}")))?;
+    }
+    // the lines of this text are nobody's; its keys are what an error must name
+    Ok(Recipe::parse(&tree.to_string(), Path::new("--set"))?)
+}
+
+/// Sets `key.path[0].name=value` in a tree; the value is TOML, or else a plain word.
+fn change_key(tree: &mut toml::Table, change: &str) -> Result<(), String> {
+    let (path, value) = change
+        .split_once('=')
+        .ok_or_else(|| format!("got `{change}`; expected key=value"))?;
+    let value = match format!("v = {value}").parse::<toml::Table>() {
+        Ok(mut t) if t.len() == 1 => t.remove("v").unwrap_or(toml::Value::Boolean(false)),
+        _ => toml::Value::String(value.to_owned()),
+    };
+    let steps: Vec<&str> = path.trim().split('.').collect();
+    let (last, above) = steps.split_last().ok_or("an empty key")?;
+    let mut at = tree;
+    for step in above {
+        let (name, index) = indexed(step)?;
+        let here = at
+            .entry(name)
+            .or_insert_with(|| toml::Value::Table(toml::Table::new()));
+        let here = match index {
+            None => here,
+            Some(i) => here
+                .as_array_mut()
+                .and_then(|a| a.get_mut(i))
+                .ok_or_else(|| format!("{path}: there is no `{step}`"))?,
+        };
+        at = here
+            .as_table_mut()
+            .ok_or_else(|| format!("{path}: `{step}` is no table"))?;
+    }
+    at.insert((*last).to_owned(), value);
+    Ok(())
+}
+
+/// `name[3]` as name and index.
+fn indexed(step: &str) -> Result<(String, Option<usize>), String> {
+    match step.split_once('[') {
+        None => Ok((step.to_owned(), None)),
+        Some((name, rest)) => {
+            let index = rest.strip_suffix(']').and_then(|i| i.parse().ok());
+            let index = index.ok_or_else(|| format!("`{step}`: expected name[0]"))?;
+            Ok((name.to_owned(), Some(index)))
+        }
+    }
+}
+
+/// A bad recipe, or a bad `--set`.
+enum RecipeFailure {
+    Recipe(RecipeError),
+    Usage(String),
+}
+
+impl From<RecipeError> for RecipeFailure {
+    fn from(e: RecipeError) -> Self {
+        Self::Recipe(e)
+    }
+}
+
+impl From<RecipeFailure> for Failure {
+    fn from(e: RecipeFailure) -> Self {
+        match e {
+            RecipeFailure::Recipe(e) => e.into(),
+            RecipeFailure::Usage(why) => Self::usage(why),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{change_key, stays_inside};
+
+    #[test]
+    fn keys_are_changed_in_place() {
+        let mut tree: toml::Table = "[grid]\nresolution = 256\n[[features]]\nname = \"seat\"\n"
+            .parse()
+            .unwrap();
+        change_key(&mut tree, "grid.resolution=64").unwrap();
+        change_key(&mut tree, "morph.method=linear").unwrap();
+        change_key(&mut tree, "features[0].morph.t=\"t^2\"").unwrap();
+        assert_eq!(tree["grid"]["resolution"].as_integer(), Some(64));
+        assert_eq!(tree["morph"]["method"].as_str(), Some("linear"));
+        assert_eq!(tree["features"][0]["morph"]["t"].as_str(), Some("t^2"));
+        for bad in [
+            "grid",
+            "features[1].name=x",
+            "features[x].name=x",
+            "grid.resolution.a=1",
+        ] {
+            assert!(change_key(&mut tree, bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn results_stay_in_their_folder() {
+        assert!(stays_inside("a/{name}.stl") && stays_inside("./a.stl"));
+        assert!(!stays_inside("../a.stl") && !stays_inside("/tmp/a.stl"));
+    }
+}

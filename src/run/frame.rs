@@ -1,0 +1,128 @@
+//! One field to one mesh: sample, extract, drop crumbs, inspect.
+
+use super::report::FrameReport;
+use crate::check::{self, Options, drop_crumbs, inspect, solid_pieces};
+use crate::field::Shared;
+use crate::field::sample::{sample, undecided};
+use crate::grid::Lattice;
+use crate::iso::{Mesher, extract};
+use crate::job::{Cancelled, Job};
+use crate::mesh::TriMesh;
+use std::time::Instant;
+
+/// What to make.
+#[derive(Clone, Copy, Debug)]
+pub struct Work<'a> {
+    /// The hybrid's name.
+    pub variant: &'a str,
+    /// The time.
+    pub t: f64,
+    /// Where to sample.
+    pub lattice: Lattice,
+    /// Which mesher.
+    pub mesher: Mesher,
+    /// Loose pieces below this share of the volume are dropped.
+    pub crumbs: f64,
+    /// Whether to count self-intersections and to search undecided cells.
+    pub verify: bool,
+}
+
+/// A mesh, or why there is none.
+#[derive(Clone, Debug)]
+pub struct FrameResult {
+    /// The mesh; `None` when the report has an error.
+    pub mesh: Option<TriMesh>,
+    /// What is known about it.
+    pub report: FrameReport,
+}
+
+impl FrameResult {
+    /// A frame without a mesh.
+    pub fn failed(work: &Work<'_>, why: String) -> Self {
+        let report = FrameReport {
+            hybrid: work.variant.to_owned(),
+            t: work.t,
+            error: Some(why),
+            voxel_mm: work.lattice.step,
+            ..FrameReport::default()
+        };
+        Self { mesh: None, report }
+    }
+}
+
+/// Times one stage.
+fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let made = work();
+    *seconds += start.elapsed().as_secs_f64();
+    made
+}
+
+/// Subdivisions of an undecided cell when asked to verify: to an eighth of its side.
+const DECIDE_LEVELS: u32 = 3;
+
+/// Makes the mesh of a field.
+///
+/// # Errors
+/// [`Cancelled`]; an empty result is no error here but stands in the report.
+pub fn make(
+    work: &Work<'_>,
+    field: &dyn Fn(&dyn Job) -> Result<Shared, Cancelled>,
+    job: &dyn Job,
+) -> Result<FrameResult, Cancelled> {
+    let mut r = FrameReport {
+        hybrid: work.variant.to_owned(),
+        t: work.t,
+        voxel_mm: work.lattice.step,
+        ..FrameReport::default()
+    };
+    job.stage("morph");
+    let field = timed(&mut r.seconds.morph, || field(job))?;
+    let sampling = timed(&mut r.seconds.sample, || sample(&*field, work.lattice, job))?;
+    r.active_bricks = sampling.stats.active_bricks;
+    r.bricks = sampling.stats.bricks;
+    r.evaluated = sampling.stats.evaluated;
+    r.border_clipped = sampling.stats.border_clipped;
+    let mesh = timed(&mut r.seconds.mesh, || {
+        extract(&sampling.bricks, work.mesher, job)
+    })?;
+    if work.verify {
+        let search = || undecided(&*field, &sampling, DECIDE_LEVELS, job);
+        let found = timed(&mut r.seconds.check, search)?;
+        r.undecided_cells = Some(found.left + found.missed);
+    }
+    drop(sampling);
+    if mesh.faces.is_empty() {
+        let why = "nothing is inside: the result is empty at this time; try another method, inner \
+                   function or finer cells";
+        r.error = Some(why.to_owned());
+        return Ok(FrameResult {
+            mesh: None,
+            report: r,
+        });
+    }
+    job.stage("check");
+    let mesh = timed(&mut r.seconds.check, || {
+        swept(mesh, work.crumbs, &mut r.crumbs)
+    });
+    crate::job::check(job)?;
+    let options = Options {
+        self_intersections: work.verify,
+    };
+    let health = timed(&mut r.seconds.check, || inspect(&mesh, &options));
+    r.pieces = Some(timed(&mut r.seconds.check, || solid_pieces(&mesh)).solids as u64);
+    r.health = Some(health);
+    Ok(FrameResult {
+        mesh: Some(mesh),
+        report: r,
+    })
+}
+
+fn swept(mesh: TriMesh, share: f64, crumbs: &mut check::Crumbs) -> TriMesh {
+    if share <= 0.0 {
+        return mesh;
+    }
+    let (mesh, dropped) = drop_crumbs(&mesh, share);
+    *crumbs = dropped;
+    mesh
+}

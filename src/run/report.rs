@@ -1,0 +1,117 @@
+//! `run.json`: what was made, from what, how long it took.
+
+use crate::check::{Crumbs, Health};
+use crate::scene::Input;
+use serde::Serialize;
+
+/// Seconds of each stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Seconds {
+    /// Fixing the time, measuring what is automatic.
+    pub morph: f64,
+    /// Sampling the field.
+    pub sample: f64,
+    /// Making triangles.
+    pub mesh: f64,
+    /// Counting what samples cannot show, crumbs, the check.
+    pub check: f64,
+    /// Writing the mesh and reading it back.
+    pub write: f64,
+    /// The picture.
+    pub picture: f64,
+}
+
+/// One frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FrameReport {
+    /// The hybrid's name, empty for a recipe's only one.
+    pub hybrid: String,
+    /// The time.
+    pub t: f64,
+    /// The mesh, when it was written.
+    pub file: Option<String>,
+    /// Its size.
+    pub file_bytes: Option<u64>,
+    /// The picture, when it was written.
+    pub picture: Option<String>,
+    /// Why there is no mesh.
+    pub error: Option<String>,
+    /// Seconds of each stage.
+    pub seconds: Seconds,
+    /// Side of a cell, mm.
+    pub voxel_mm: f64,
+    /// Bricks that hold samples.
+    pub active_bricks: u64,
+    /// Bricks of the lattice.
+    pub bricks: u64,
+    /// Points at which the field was evaluated.
+    pub evaluated: u64,
+    /// Whether the shape reached the border of the lattice and was closed there.
+    pub border_clipped: bool,
+    /// Cells that look empty or full but may hold something smaller; `None` when not counted.
+    pub undecided_cells: Option<u64>,
+    /// Solids, crumbs left out.
+    pub pieces: Option<u64>,
+    /// Loose pieces that were dropped.
+    pub crumbs: Crumbs,
+    /// Volume over the weighted mean of the parents' volumes.
+    pub volume_kept: Option<f64>,
+    /// The state of the mesh.
+    pub health: Option<Health>,
+}
+
+impl FrameReport {
+    /// Fills in the volume kept.
+    pub(super) fn mean_volume(&mut self, mean: f64) {
+        let volume = self.health.as_ref().and_then(|h| h.volume_mm3);
+        self.volume_kept = volume.filter(|_| mean > 0.0).map(|v| v / mean);
+    }
+}
+
+/// A whole run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Report {
+    /// Version of this program.
+    pub version: String,
+    /// The recipe's file, if there is one.
+    pub recipe: Option<String>,
+    /// SHA-256 of the recipe's text.
+    pub recipe_sha256: String,
+    /// The files read.
+    pub inputs: Vec<Input>,
+    /// Nothing here is random; the seed of what may become so.
+    pub seed: u64,
+    /// Threads used.
+    pub threads: usize,
+    /// Seconds from files to fields.
+    pub seconds_shapes: f64,
+    /// Seconds in all.
+    pub seconds_total: f64,
+    /// Largest resident set, megabytes of 10^6 bytes.
+    pub peak_memory_mb: Option<f64>,
+    /// What was assumed and found.
+    pub notes: Vec<String>,
+    /// The frames.
+    pub frames: Vec<FrameReport>,
+}
+
+impl Report {
+    /// As JSON, with a newline at the end.
+    pub fn to_json(&self) -> String {
+        // plain data with string keys: there is nothing that cannot be serialised
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// Whether every frame has its mesh.
+    pub fn complete(&self) -> bool {
+        self.frames.iter().all(|f| f.error.is_none())
+    }
+
+    /// Whether every mesh there is can be printed.
+    pub fn printable(&self) -> bool {
+        self.frames
+            .iter()
+            .filter_map(|f| f.health.as_ref())
+            .all(|h| h.printable)
+    }
+}

@@ -1,0 +1,219 @@
+//! Shapes read and placed: enough to know how large the work will be.
+
+use super::live::{self, LiveShape, Placed, Stop};
+use super::variant::Variant;
+use super::{Scene, SceneError, mesh_element, plan};
+use crate::grid::Lattice;
+use crate::job::{self, Job};
+use crate::num::Aabb;
+use crate::recipe::{GridEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// A recipe whose shapes have been read and placed.
+pub struct Draft {
+    recipe: Recipe,
+    source: Source,
+    /// The folder paths are relative to.
+    beside: PathBuf,
+    placed: Vec<Placed>,
+    /// Side of a cell, mm.
+    step: f64,
+}
+
+impl Draft {
+    /// Reads and places the shapes that take part; `beside` is the folder paths are relative to.
+    ///
+    /// # Errors
+    /// What is wrong in the recipe or a file, by its key; cancelled.
+    pub fn open(
+        recipe: Recipe,
+        source: Source,
+        beside: &Path,
+        job: &dyn Job,
+    ) -> Result<Self, SceneError> {
+        job.stage("read");
+        // names are looked up freely from here on
+        recipe.validate().map_err(|p| source.locate(p))?;
+        let names = used(&recipe).map_err(|p| source.locate(p))?;
+        let mut placed: Vec<Placed> = Vec::with_capacity(names.len());
+        // those that stand like another come after it
+        let like = |n: &String| matches!(recipe.shapes[n].place, PlainOr::Table(_));
+        let (second, first): (Vec<String>, Vec<String>) = names.into_iter().partition(like);
+        let count = first.len() + second.len();
+        for (i, name) in first.iter().chain(&second).enumerate() {
+            job::check(job)?;
+            job.done(i as f64 / count as f64);
+            let at = join("shapes", name);
+            let entry = &recipe.shapes[name];
+            let box_ = match &entry.place {
+                PlainOr::Table(PlaceLike { like }) => {
+                    placed.iter().find(|p| p.name == *like).map(|p| p.bounds)
+                }
+                PlainOr::Plain(_) => None,
+            };
+            let shape = live::load(name, entry, beside, box_, &at);
+            placed.push(shape.map_err(|p| source.locate(p))?);
+        }
+        placed.sort_by(|a, b| a.name.cmp(&b.name));
+        let step = step(&recipe.grid, longest(&placed));
+        Ok(Self {
+            recipe,
+            source,
+            beside: beside.to_owned(),
+            placed,
+            step,
+        })
+    }
+
+    /// Side of a cell, mm.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// The longest side of all shapes together, mm.
+    pub fn longest(&self) -> f64 {
+        longest(&self.placed)
+    }
+
+    /// The space that results are sampled in, as far as it is known without the fields.
+    pub fn domain(&self) -> Aabb {
+        hull(&self.placed).grow(self.padding())
+    }
+
+    /// Area of the triangles of each shape, mm².
+    pub fn areas(&self) -> Vec<f64> {
+        self.placed.iter().map(|p| p.area).collect()
+    }
+
+    /// The boxes of the shapes, mm.
+    pub fn boxes(&self) -> Vec<Aabb> {
+        self.placed.iter().map(|p| p.bounds).collect()
+    }
+
+    /// The recipe.
+    pub fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
+    fn padding(&self) -> f64 {
+        self.longest() * self.recipe.grid.padding.unwrap_or(GridEntry::PADDING)
+    }
+
+    /// Makes the fields, elements and plans.
+    ///
+    /// # Errors
+    /// What is wrong in the recipe or a file, by its key; cancelled.
+    pub fn build(self, job: &dyn Job) -> Result<Scene, SceneError> {
+        let (padding, step) = (self.padding(), self.step);
+        let Self {
+            recipe,
+            source,
+            beside,
+            placed,
+            ..
+        } = self;
+        let locate = |p: Problem| SceneError::Bad(source.locate(p));
+        let box_ = hull(&placed);
+        fits(&Lattice::covering(&box_.grow(padding), step)).map_err(locate)?;
+        let meshes = mesh_element::read_all(&recipe.features, &beside, job).map_err(locate)?;
+        let (mut notes, mut inputs, mut shapes) = (Vec::new(), Vec::new(), Vec::new());
+        for shape in placed {
+            job.stage(&format!("shape {}", shape.name));
+            let (name, bounds) = (shape.name.clone(), shape.bounds);
+            notes.push(shape.note.clone());
+            inputs.extend(shape.input.clone());
+            let (exact, found) =
+                live::exact(shape, &recipe.shapes[&name], job).map_err(|stop| match stop {
+                    Stop::Problem(p) => locate(p),
+                    Stop::Cancelled(c) => c.into(),
+                })?;
+            notes.extend(found);
+            let (field, volume) = live::sampled(exact.clone(), step, job)?;
+            shapes.push(LiveShape {
+                name,
+                field,
+                exact,
+                volume,
+                bounds,
+            });
+        }
+        let variants = recipe
+            .variants()
+            .iter()
+            .map(|(at, entry)| Variant::new(entry, at, &shapes, &meshes, &recipe))
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(locate)?;
+        let mut domain = Aabb::EMPTY;
+        for v in &variants {
+            let morph = v
+                .morph(0.5)
+                .map_err(|e| locate(Problem::new("morph", e.to_string())))?;
+            domain = domain.hull(morph.domain());
+        }
+        let lattice = Lattice::covering(&domain.grow(padding), step);
+        fits(&lattice).map_err(locate)?;
+        Ok(Scene {
+            name: recipe.name,
+            shapes,
+            variants,
+            lattice,
+            notes,
+            inputs,
+        })
+    }
+}
+
+/// The shapes that some variant, or the place of one of them, needs.
+fn used(recipe: &Recipe) -> Result<BTreeSet<String>, Problem> {
+    let mut names = BTreeSet::new();
+    for (at, entry) in recipe.variants() {
+        let of = plan::shape_names(&entry, &at)?;
+        plan::method(&entry, of.len(), recipe, &at)?;
+        names.extend(of);
+    }
+    for name in names.clone() {
+        if let PlainOr::Table(PlaceLike { like }) = &recipe.shapes[&name].place {
+            names.insert(like.clone());
+        }
+    }
+    Ok(names)
+}
+
+fn hull(placed: &[Placed]) -> Aabb {
+    placed.iter().fold(Aabb::EMPTY, |b, p| b.hull(p.bounds))
+}
+
+fn longest(placed: &[Placed]) -> f64 {
+    hull(placed).size().max_element()
+}
+
+fn step(grid: &GridEntry, longest: f64) -> f64 {
+    let cells = grid.resolution.unwrap_or(GridEntry::RESOLUTION);
+    grid.voxel.unwrap_or(longest / f64::from(cells))
+}
+
+/// The lattice of one shape that grows by `room` mm.
+pub(super) fn cells(grid: &GridEntry, box_: Aabb, room: f64) -> Result<Lattice, Problem> {
+    let box_ = box_.grow(room);
+    let longest = box_.size().max_element();
+    let step = step(grid, longest);
+    // two cells keep the surface off the border; more only costs
+    let padding = grid.padding.map_or(2.0 * step, |p| p * longest);
+    let lattice = Lattice::covering(&box_.grow(padding), step);
+    fits(&lattice).map(|()| lattice)
+}
+
+fn fits(lattice: &Lattice) -> Result<(), Problem> {
+    if lattice.fits_f32() {
+        return Ok(());
+    }
+    let far = lattice.bounds();
+    let why = format!(
+        "cells of {} mm are too fine for coordinates up to {:.0} mm in a file of f32 numbers; use \
+         larger cells, or place = \"floor\"",
+        lattice.step,
+        far.min.abs().max(far.max.abs()).max_element()
+    );
+    Err(Problem::new("grid", why))
+}

@@ -1,0 +1,374 @@
+//! `[morph]` and its features -> the plan of a method.
+
+use super::elements;
+use super::live::LiveShape;
+use crate::element::{Element, align};
+use crate::morph::{Blend, Course, Feature, Form, Frames, Inner, Part, Plan, SpaceTime};
+use crate::recipe::{
+    BlendEntry, ElementShape, FeatureEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry,
+    OneOrMany, PlainOr, Problem, Recipe, SpaceTimeEntry, WeightingEntry, WeightingKind, Weights,
+};
+use crate::warp::Deform;
+use crate::weight::{Ease, Weighting};
+use std::collections::BTreeMap;
+
+/// Which shapes an entry morphs, in order.
+pub(super) fn shape_names(entry: &MorphEntry, at: &str) -> Result<Vec<String>, Problem> {
+    let names: Vec<String> = match (&entry.between, &entry.among) {
+        (Some(pair), _) => pair.to_vec(),
+        (None, Some(all)) => all.clone(),
+        (None, None) => {
+            let why = "which shapes? give between = [\"a\", \"b\"] or among = [\"a\", \"b\", ...]";
+            return Err(Problem::new(at, why));
+        }
+    };
+    let key = if entry.between.is_some() {
+        "between"
+    } else {
+        "among"
+    };
+    let at = format!("{at}.{key}");
+    if names.len() < 2 {
+        return Err(Problem::new(
+            at,
+            format!("{} shape; a morph needs two or more", names.len()),
+        ));
+    }
+    for (i, name) in names.iter().enumerate() {
+        if names[..i].contains(name) {
+            return Err(Problem::new(at, format!("`{name}` is there twice")));
+        }
+    }
+    Ok(names)
+}
+
+/// The method meant: `auto` decided, and what it needs is there.
+pub(super) fn method(
+    entry: &MorphEntry,
+    shapes: usize,
+    recipe: &Recipe,
+    at: &str,
+) -> Result<MethodEntry, Problem> {
+    let asked = entry.method.unwrap_or_default();
+    let featured = !recipe.features.is_empty();
+    let needs = matches!(
+        asked,
+        MethodEntry::Graft | MethodEntry::Group | MethodEntry::FeatureVolume
+    );
+    let at = format!("{at}.method");
+    if needs && !featured {
+        let why = "this method needs features; add [[features]], or use \"space-time\"";
+        return Err(Problem::new(at, why));
+    }
+    match asked {
+        MethodEntry::Graft if shapes != 2 => {
+            let why = format!("a graft has two shapes, here are {shapes}; use \"group\"");
+            Err(Problem::new(at, why))
+        }
+        MethodEntry::Auto if !featured => Ok(MethodEntry::SpaceTime),
+        MethodEntry::Auto if shapes == 2 => Ok(MethodEntry::Graft),
+        MethodEntry::Auto => Ok(MethodEntry::Group),
+        other => Ok(other),
+    }
+}
+
+/// The plan of an entry over its live shapes; `at` is the entry's key.
+pub(super) fn plan(
+    entry: &MorphEntry,
+    method: MethodEntry,
+    shapes: &[&LiveShape],
+    meshes: &BTreeMap<String, Element>,
+    recipe: &Recipe,
+    at: &str,
+) -> Result<Plan, Problem> {
+    let names: Vec<&str> = shapes.iter().map(|s| s.name.as_str()).collect();
+    let plain = matches!(method, MethodEntry::Linear | MethodEntry::SpaceTime);
+    let used: &[FeatureEntry] = if plain { &[] } else { &recipe.features };
+    let rows = Rows {
+        entry,
+        names: &names,
+    };
+    let mut features = Vec::with_capacity(used.len());
+    for (i, f) in used.iter().enumerate() {
+        let elements = corresponding(f, method, &names, meshes, &format!("features[{i}]"))?;
+        features.push(rows.feature(f, elements));
+    }
+    let course = rows.whole(&features);
+    let frame_rows = mean_rows(&features, names.len());
+    for (f, entry) in features.iter_mut().zip(used) {
+        f.deform = rows.deform(entry, frame_rows.as_ref());
+    }
+    let blend = match (method, entry.blend) {
+        (MethodEntry::FeatureVolume, _) | (_, Some(BlendEntry::Fields)) => Blend::Fields,
+        _ => Blend::Maps,
+    };
+    let tall = shapes.iter().map(|s| s.bounds.size().z).sum::<f64>() / shapes.len().max(1) as f64;
+    Ok(Plan {
+        shapes: shapes
+            .iter()
+            .map(|s| Part {
+                name: s.name.clone(),
+                field: s.field.clone(),
+            })
+            .collect(),
+        features,
+        course,
+        blend,
+        inner: inner(method, entry.inner),
+        weighting: weighting(method, entry, blend, tall),
+        sharp: Weighting::Smooth {
+            epsilon: 0.01 * tall,
+            power: 4.0,
+        },
+        frames: frames(entry, &names, at)?,
+        space_time: space_time(entry.space_time.as_ref(), names.len(), at)?,
+    })
+}
+
+/// The elements of a feature, one a shape, with axes that correspond.
+fn corresponding(
+    f: &FeatureEntry,
+    method: MethodEntry,
+    names: &[&str],
+    meshes: &BTreeMap<String, Element>,
+    at: &str,
+) -> Result<Vec<Element>, Problem> {
+    let mut all = Vec::with_capacity(names.len());
+    for &name in names {
+        let on = format!("{at}.on");
+        let Some(entry) = f.on.get(name) else {
+            let why = format!(
+                "feature `{}` has no element on `{name}`; add [features.on.{name}]",
+                f.name
+            );
+            return Err(Problem::new(on, why));
+        };
+        let at = crate::recipe::join(&on, name);
+        let deform = match method {
+            // the baseline's maps are affine (Lerios 1995)
+            MethodEntry::FeatureVolume => Deform::NONE,
+            _ => elements::deform(
+                entry.twist_deg.or(f.twist_deg).unwrap_or(0.0),
+                entry.taper.or(f.taper).unwrap_or(1.0),
+                entry.bend_deg.or(f.bend_deg).unwrap_or(0.0),
+            ),
+        };
+        all.push(match entry.shape(&at)? {
+            ElementShape::Primitive(p) => {
+                elements::element(p, deform, &format!("{at}.{}", p.key()))?
+            }
+            ElementShape::Mesh(_) => meshes
+                .get(&at)
+                .cloned()
+                .ok_or_else(|| Problem::new(&at, "the element's mesh was not read"))?
+                .deformed(deform)
+                .map_err(|e| Problem::new(&at, e.to_string()))?,
+        });
+    }
+    if let Some((first, others)) = all.split_first_mut() {
+        align(first, others);
+    }
+    Ok(all)
+}
+
+/// The rows of weights of an entry.
+struct Rows<'a> {
+    entry: &'a MorphEntry,
+    names: &'a [&'a str],
+}
+
+impl Rows<'_> {
+    /// The row under `name`; shapes that it does not name have no share.
+    fn row(&self, rows: &Weights, name: &str) -> Option<Vec<f64>> {
+        let row = rows.get(name)?;
+        let all: Vec<f64> = self
+            .names
+            .iter()
+            .map(|&n| row.get(n).copied().unwrap_or(0.0))
+            .collect();
+        // a row over other shapes only, as a hybrid of fewer shapes has, says nothing here
+        (all.iter().sum::<f64>() > 0.0).then_some(all)
+    }
+
+    /// What everything without a row of its own follows.
+    fn rest(&self) -> Course {
+        match self.row(&self.entry.weights, "default") {
+            Some(row) => Course::Fixed(row),
+            None if self.names.len() == 2 => Course::Pair(Ease::Power(1.0)),
+            None => Course::Fixed(vec![1.0; self.names.len()]),
+        }
+    }
+
+    fn feature(&self, f: &FeatureEntry, elements: Vec<Element>) -> Feature {
+        let own = f
+            .morph
+            .as_ref()
+            .and_then(|m| m.t.as_ref())
+            .map(|t| t.0.clone());
+        let morph = match self.row(&self.entry.weights, &f.name) {
+            Some(row) => Course::Fixed(row),
+            None => paired(self.rest(), own),
+        };
+        let offset = f.morph.as_ref().map_or(0.0, |m| m.offset);
+        Feature {
+            name: f.name.clone(),
+            elements,
+            deform: morph.clone(),
+            morph,
+            offset,
+        }
+    }
+
+    /// Weights of the frames: own row, `default` row, own time function, else those all features
+    /// share, so that the parts of a hybrid stay in proportion.
+    fn deform(&self, f: &FeatureEntry, shared: Option<&Vec<f64>>) -> Course {
+        let rows = &self.entry.deform_weights;
+        let own = f
+            .morph
+            .as_ref()
+            .and_then(|m| m.deform.as_ref())
+            .map(|t| t.0.clone());
+        if let Some(row) = self
+            .row(rows, &f.name)
+            .or_else(|| self.row(rows, "default"))
+        {
+            return Course::Fixed(row);
+        }
+        match shared {
+            Some(mean) => Course::Fixed(mean.clone()),
+            None if self.names.len() == 2 => Course::Pair(own.unwrap_or(Ease::Power(1.0))),
+            None => Course::Fixed(vec![1.0; self.names.len()]),
+        }
+    }
+
+    /// Weights of the whole: the rest's, or the mean of the features' where nothing is said.
+    fn whole(&self, features: &[Feature]) -> Course {
+        match mean_rows(features, self.names.len()) {
+            Some(mean) if self.row(&self.entry.weights, "default").is_none() => Course::Fixed(mean),
+            _ => self.rest(),
+        }
+    }
+}
+
+/// A pair's course with the feature's own time function.
+fn paired(course: Course, own: Option<Ease>) -> Course {
+    match (course, own) {
+        (Course::Pair(_), Some(ease)) => Course::Pair(ease),
+        (course, _) => course,
+    }
+}
+
+/// The mean of the features' normalised rows, when all of them are fixed.
+fn mean_rows(features: &[Feature], shapes: usize) -> Option<Vec<f64>> {
+    let fixed = |f: &Feature| matches!(f.morph, Course::Fixed(_));
+    if features.is_empty() || !features.iter().all(fixed) {
+        return None;
+    }
+    let mut mean = vec![0.0; shapes];
+    for f in features {
+        for (m, w) in mean.iter_mut().zip(f.morph.at(0.0)) {
+            *m += w / features.len() as f64;
+        }
+    }
+    Some(mean)
+}
+
+fn inner(method: MethodEntry, asked: Option<InnerEntry>) -> Inner {
+    match (method, asked) {
+        (MethodEntry::Linear | MethodEntry::FeatureVolume, _) => Inner::Linear,
+        (MethodEntry::SpaceTime, _) => Inner::SpaceTime,
+        (_, Some(InnerEntry::Linear)) => Inner::Linear,
+        (_, Some(InnerEntry::SpaceTime)) => Inner::SpaceTime,
+        (_, Some(InnerEntry::Grow) | None) => Inner::Grow,
+        (_, Some(InnerEntry::Erode)) => Inner::Erode,
+        (_, Some(InnerEntry::Auto)) => Inner::Auto,
+    }
+}
+
+/// The weighting asked for, with widths from the mean height (GRAFT, section Weights).
+fn weighting(method: MethodEntry, entry: &MorphEntry, blend: Blend, tall: f64) -> Weighting {
+    let asked = match &entry.weighting {
+        None => WeightingEntry {
+            kind: WeightingKind::Smooth,
+            epsilon: None,
+            power: None,
+        },
+        Some(PlainOr::Plain(kind)) => WeightingEntry {
+            kind: *kind,
+            epsilon: None,
+            power: None,
+        },
+        Some(PlainOr::Table(t)) => *t,
+    };
+    let baseline = method == MethodEntry::FeatureVolume;
+    match asked.kind {
+        WeightingKind::InverseSquare => Weighting::InverseSquare {
+            epsilon: asked.epsilon.unwrap_or(0.02 * tall),
+        },
+        _ if baseline => Weighting::InverseSquare {
+            epsilon: 0.02 * tall,
+        },
+        WeightingKind::Transfinite => Weighting::Transfinite,
+        WeightingKind::Smooth => {
+            // leaks of one feature's field into another's erode thin parts; positions may flow
+            let (share, power) = if blend == Blend::Fields {
+                (0.01, 4.0)
+            } else {
+                (0.03, 2.0)
+            };
+            Weighting::Smooth {
+                epsilon: asked.epsilon.unwrap_or(share * tall),
+                power: asked.power.unwrap_or(power),
+            }
+        }
+    }
+}
+
+/// `dominant` is fixed later, when the time is known.
+fn frames(entry: &MorphEntry, names: &[&str], at: &str) -> Result<Frames, Problem> {
+    match entry.frames.as_deref() {
+        None | Some("average" | "dominant") => Ok(Frames::Average),
+        Some(name) => names
+            .iter()
+            .position(|&n| n == name)
+            .map(Frames::Of)
+            .ok_or_else(|| {
+                let why = format!(
+                    "`{name}` takes no part in this morph; it is of {}",
+                    names.join(", ")
+                );
+                Problem::new(format!("{at}.frames"), why)
+            }),
+    }
+}
+
+fn space_time(
+    entry: Option<&SpaceTimeEntry>,
+    shapes: usize,
+    at: &str,
+) -> Result<SpaceTime, Problem> {
+    let Some(entry) = entry else {
+        return Ok(SpaceTime::default());
+    };
+    let a = match entry.a.value() {
+        None => None,
+        Some(OneOrMany::One(a)) => Some(vec![*a; shapes]),
+        Some(OneOrMany::Many(a)) if a.len() == shapes => Some(a.clone()),
+        Some(OneOrMany::Many(a)) => {
+            let why = format!("{} numbers for {shapes} shapes", a.len());
+            return Err(Problem::new(format!("{at}.space-time.a"), why));
+        }
+    };
+    let form = match entry.form {
+        None | Some(FormEntry::L) => Form::L,
+        Some(FormEntry::S) => Form::S,
+        Some(FormEntry::HalfCylinders) => Form::HalfCylinders,
+    };
+    let a3 = entry.a3.unwrap_or(SpaceTime::default().a3);
+    Ok(SpaceTime {
+        form,
+        a0: entry.a0.value().copied(),
+        a,
+        a3,
+    })
+}

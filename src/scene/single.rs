@@ -1,0 +1,98 @@
+//! One shape on its own, as `convert` needs it.
+
+use super::draft::cells;
+use super::live::{self, Stop};
+use super::{Input, SceneError};
+use crate::field::Shared;
+use crate::grid::Lattice;
+use crate::job::Job;
+use crate::mesh::TriMesh;
+use crate::num::Aabb;
+use crate::recipe::{GridEntry, Problem, Recipe, ShapeEntry, Source};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A shape read and placed, not yet a field.
+pub struct Single {
+    placed: live::Placed,
+    entry: ShapeEntry,
+    /// Where to sample it.
+    pub lattice: Lattice,
+}
+
+impl Single {
+    /// Reads and places a shape; its name serves messages.
+    ///
+    /// # Errors
+    /// What is wrong with the entry, the grid or a file.
+    pub fn open(
+        name: &str,
+        entry: ShapeEntry,
+        grid: &GridEntry,
+        beside: &Path,
+    ) -> Result<Self, SceneError> {
+        let source = Source::unwritten();
+        let shapes = BTreeMap::from([(name.to_owned(), entry.clone())]);
+        let recipe = Recipe {
+            version: crate::recipe::VERSION,
+            grid: grid.clone(),
+            shapes,
+            ..Recipe::default()
+        };
+        let locate = |p: Problem| SceneError::Bad(source.locate(p));
+        recipe.validate().map_err(locate)?;
+        let at = crate::recipe::join("shapes", name);
+        let placed = live::load(name, &entry, beside, None, &at).map_err(locate)?;
+        let lattice = cells(grid, placed.bounds, thickness(&entry)).map_err(locate)?;
+        Ok(Self {
+            placed,
+            entry,
+            lattice,
+        })
+    }
+
+    /// The box round it, mm.
+    pub fn bounds(&self) -> Aabb {
+        self.placed.bounds
+    }
+
+    /// Area of its triangles, mm².
+    pub fn area(&self) -> f64 {
+        self.placed.area
+    }
+
+    /// What was assumed and found.
+    pub fn note(&self) -> &str {
+        &self.placed.note
+    }
+
+    /// The file it came from.
+    pub fn input(&self) -> Option<&Input> {
+        self.placed.input.as_ref()
+    }
+
+    /// The triangles it is made of: the mesh itself, or the raw shells of a solid's parts.
+    pub fn shells(&self) -> TriMesh {
+        self.placed.body.shells()
+    }
+
+    /// Its field, and what was found on the way.
+    ///
+    /// # Errors
+    /// A mesh that encloses nothing; cancelled.
+    pub fn field(self, job: &dyn Job) -> Result<(Shared, Vec<String>), SceneError> {
+        let source = Source::unwritten();
+        live::exact(self.placed, &self.entry, job).map_err(|stop| match stop {
+            Stop::Problem(p) => SceneError::Bad(source.locate(p)),
+            Stop::Cancelled(c) => c.into(),
+        })
+    }
+}
+
+/// How far sheets grow beyond their mesh, mm.
+fn thickness(entry: &ShapeEntry) -> f64 {
+    entry
+        .thicken
+        .as_ref()
+        .map_or(0.0, |t| crate::recipe::ThickenEntry::of(t).mm / 2.0)
+}
