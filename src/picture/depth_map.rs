@@ -13,6 +13,9 @@ const FEWEST: f32 = 96.0;
 const MOST: f32 = 384.0;
 /// Share by which a triangle is taken larger, so that rounding leaves no gap between two.
 const SLACK: f32 = 1e-4;
+/// Side of the cells within which a coarser copy has one point, in texels: errors stay under
+/// [`LIFT`].
+const COARSE: f32 = 1.4;
 /// How far a point is lifted off its surface before it is looked up, in texels. Less, and slanted
 /// surfaces shade themselves in stripes; more, and light leaks into corners.
 const LIFT: f32 = 1.3;
@@ -25,7 +28,7 @@ pub(super) struct Spot {
     pub normal: Vec3,
 }
 
-/// What casts the shadows: the mesh, with the points within one texel made one when it is fine.
+/// What casts the shadows: the mesh, with the points of a cell made one when it is fine.
 pub(super) struct Caster<'a> {
     points: Cow<'a, [Vec3]>,
     faces: Cow<'a, [[u32; 3]]>,
@@ -36,9 +39,9 @@ pub(super) struct Caster<'a> {
 
 impl<'a> Caster<'a> {
     /// For a picture with that many pixels along its longer side.
-    pub fn of(scene: &'a Scene, pixels: u32) -> Self {
+    pub fn of(scene: &'a Scene, pixels: f32) -> Self {
         let corners = scene.corners();
-        let texels = (pixels as f32 * TEXELS).clamp(FEWEST, MOST).round();
+        let texels = (pixels * TEXELS).clamp(FEWEST, MOST).round();
         // With fewer faces than a map has texels a coarser copy saves nothing.
         if (scene.faces.len() as f32) < texels * texels {
             let (points, faces) = (Cow::from(&scene.points), Cow::from(&scene.faces));
@@ -49,7 +52,7 @@ impl<'a> Caster<'a> {
                 texels,
             };
         }
-        let scale = texels / (scene.max - scene.min).max_element();
+        let scale = texels / COARSE / (scene.max - scene.min).max_element();
         let cell = |v: u32| {
             // Unused points may lie anywhere; the casts saturate.
             let [x, y, z] = ((scene.points[v as usize] - scene.min) * scale).to_array();
@@ -82,11 +85,15 @@ impl<'a> Caster<'a> {
 
 /// How near to the light the first surface lies, on a grid across the light's direction.
 pub(super) struct DepthMap {
+    /// Unit vector to the light.
+    pub toward: Vec3,
+    /// Columns and rows of the grid, in texels a unit.
     across: Vec3,
     along: Vec3,
-    low: Vec2,
-    /// Texels a unit.
-    scale: f32,
+    /// The origin's place in the grid.
+    origin: Vec2,
+    /// How far off its surface a spot is looked up.
+    lift: f32,
     width: usize,
     height: usize,
     depth: Vec<f32>,
@@ -102,23 +109,30 @@ impl DepthMap {
         let scale = caster.texels / size.max_element().max(1e-6);
         // A free texel all round, so that lookups need no care at the border.
         let [width, height] = (size * scale).to_array().map(|n| n as usize + 3);
-        let low = low - 1.0 / scale;
+        let (across, along, origin) = (across * scale, along * scale, 1.0 - low * scale);
+        let lift = LIFT / scale;
         let depth = vec![f32::NEG_INFINITY; width * height];
         let mut map = Self {
+            toward,
             across,
             along,
-            low,
-            scale,
+            origin,
+            lift,
             width,
             height,
             depth,
         };
-        let at = |p: &Vec3| ((flat(*p) - low) * scale).extend(p.dot(toward));
+        let at = |p: &Vec3| map.place(*p).extend(p.dot(toward));
         let points: Vec<Vec3> = caster.points.iter().map(at).collect();
         for f in caster.faces.iter() {
             map.draw(f.map(|v| points[v as usize]));
         }
         map
+    }
+
+    /// Where a point falls: texels, 0.5 is the first centre.
+    fn place(&self, p: Vec3) -> Vec2 {
+        Vec2::new(p.dot(self.across), p.dot(self.along)) + self.origin
     }
 
     /// Draws a triangle whose x, y are texels (0.5 is the first centre), z its nearness.
@@ -171,17 +185,16 @@ impl DepthMap {
     /// The share of a spot that the light reaches, smooth between texels, and the distance to
     /// what stands nearest in its way.
     #[inline]
-    pub fn open(&self, spot: &Spot, toward: Vec3) -> (f32, f32) {
-        let at = spot.at + (spot.normal + toward * 0.5) * (LIFT / self.scale);
-        let flat = Vec2::new(at.dot(self.across), at.dot(self.along));
-        let place = (flat - self.low) * self.scale - 0.5;
+    pub fn open(&self, spot: &Spot) -> (f32, f32) {
+        let at = spot.at + (spot.normal + self.toward * 0.5) * self.lift;
+        let place = self.place(at) - 0.5;
         let (x, y) = (place.x as i32 as usize, place.y as i32 as usize);
         if !(place.min_element() >= 0.0 && x + 1 < self.width && y + 1 < self.height) {
             return (1.0, f32::INFINITY);
         }
         let part = place - Vec2::new(x as f32, y as f32);
         let first = y * self.width + x;
-        let near = at.dot(toward);
+        let near = at.dot(self.toward);
         let gap = |i: usize| self.depth[i] - near;
         let gaps = [first, first + 1, first + self.width, first + self.width + 1].map(gap);
         let free = gaps.map(|gap| if gap > 0.0 { 0.0 } else { 1.0 });

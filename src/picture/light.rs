@@ -8,16 +8,17 @@ use rayon::prelude::*;
 use std::f32::consts::PI;
 
 /// Directions of the sky; fewer, and shadows on the ground show their edges.
-const ABOVE: usize = 30;
+const ABOVE: usize = 72;
 /// Directions of the bounce from below, which is dim.
-const BELOW: usize = 10;
+const BELOW: usize = 16;
+/// Detail of the sky's depth maps beside the key light's: its shadows are soft.
+const SKY_DETAIL: f32 = 0.7;
 /// Directions within the key light's disc; fewer, and rods cast bundles of stripes.
 const KEY: usize = 28;
 /// Radius of the key light's disc, radians: softens the edge of its shadow.
 const KEY_RADIUS: f32 = 0.22;
 
 struct Light {
-    toward: Vec3,
     color: Vec3,
     map: DepthMap,
 }
@@ -31,14 +32,20 @@ pub(super) struct Lights {
 impl Lights {
     /// For a picture with that many pixels along its longer side.
     pub fn new(scene: &Scene, camera: &Camera, pixels: u32) -> Self {
-        let caster = Caster::of(scene, pixels);
-        let light = |(toward, color)| Light {
-            toward,
+        let (sky, key) = directions(camera);
+        let fine = Caster::of(scene, pixels as f32);
+        let coarse = Caster::of(scene, pixels as f32 * SKY_DETAIL);
+        let sky = sky.into_par_iter().map(|from| (from, &coarse));
+        let key = key.into_par_iter().map(|from| (from, &fine));
+        let light = |((toward, color), caster)| Light {
             color,
-            map: DepthMap::new(&caster, toward),
+            map: DepthMap::new(caster, toward),
         };
-        let lights: Vec<Light> = directions(camera).into_par_iter().map(light).collect();
-        let open = lights.iter().map(|l| l.color * l.toward.z.max(0.0)).sum();
+        let lights: Vec<Light> = sky.chain(key).map(light).collect();
+        let open = lights
+            .iter()
+            .map(|l| l.color * l.map.toward.z.max(0.0))
+            .sum();
         Self { lights, open }
     }
 
@@ -48,9 +55,9 @@ impl Lights {
         // Light by light: one depth map at a time stays in the cache.
         for light in &self.lights {
             for (spot, sum) in spots.iter().zip(&mut sums) {
-                let slant = spot.normal.dot(light.toward);
+                let slant = spot.normal.dot(light.map.toward);
                 if slant > 0.0 {
-                    let (open, _) = light.map.open(spot, light.toward);
+                    let (open, _) = light.map.open(spot);
                     *sum += light.color * (slant * open);
                 }
             }
@@ -63,10 +70,10 @@ impl Lights {
     /// that keeps some of it away; 0 when nothing does.
     pub fn on_floor(&self, spots: &[Spot]) -> Vec<[f32; 2]> {
         let mut sums = vec![[0.0, f32::INFINITY]; spots.len()];
-        let weigh = |l: &Light| l.color.element_sum() * l.toward.z.max(0.0);
-        for light in self.lights.iter().filter(|l| l.toward.z > 0.0) {
+        let weigh = |l: &Light| l.color.element_sum() * l.map.toward.z.max(0.0);
+        for light in self.lights.iter().filter(|l| l.map.toward.z > 0.0) {
             for (spot, [sum, nearest]) in spots.iter().zip(&mut sums) {
-                let (open, distance) = light.map.open(spot, light.toward);
+                let (open, distance) = light.map.open(spot);
                 *sum += weigh(light) * open;
                 *nearest = nearest.min(distance);
             }
@@ -79,8 +86,11 @@ impl Lights {
     }
 }
 
-/// Where light comes from, and how much.
-fn directions(camera: &Camera) -> Vec<(Vec3, Vec3)> {
+/// A direction light comes from, and its colour times its strength.
+type Source = (Vec3, Vec3);
+
+/// The directions of the sky and of the key light.
+fn directions(camera: &Camera) -> (Vec<Source>, Vec<Source>) {
     // The camera's bearing, so that every view is lit alike. From above, the picture's bottom.
     let level = Vec3::new(camera.toward.x, camera.toward.y, 0.0);
     let front = level.normalize_or(-camera.up);
@@ -104,7 +114,7 @@ fn directions(camera: &Camera) -> Vec<(Vec3, Vec3)> {
         let toward = (key + (u * cos + v * sin) * r).normalize();
         (toward, Vec3::new(1.03, 1.0, 0.95) * (0.62 / KEY as f32))
     });
-    above.chain(below).chain(disc).collect()
+    (above.chain(below).collect(), disc.collect())
 }
 
 /// The angle that spreads points evenly over a spiral.
