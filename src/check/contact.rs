@@ -88,3 +88,32 @@ fn boxes(triangles: &[Triangle]) -> Vec<Box32> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Triangles over few places, so that all ways of meeting occur.
+        #[test]
+        fn finds_what_trying_all_pairs_finds(
+            points in prop::collection::vec(prop::array::uniform3(0_i32..6), 12),
+            faces in prop::collection::vec(prop::array::uniform3(0_u32..12), 1..40),
+        ) {
+            let points: Vec<DVec3> =
+                points.iter().map(|p| DVec3::from(p.map(f64::from)) * 0.1).collect();
+            let welded = Welded { points, faces, astray: 0 };
+            let triangle = |f: &[u32; 3]| Triangle::new(f.map(|v| welded.points[v as usize]), *f);
+            let all: Vec<Option<Triangle>> = welded.faces.iter().map(triangle).collect();
+            let meets = |i: usize| {
+                all.iter().enumerate().any(|(j, other)| match (&all[i], other) {
+                    (Some(a), Some(b)) => i != j && meet(a, b),
+                    _ => false,
+                })
+            };
+            let want: Vec<bool> = (0..all.len()).map(meets).collect();
+            prop_assert_eq!(contacts(&welded), Some(want));
+        }
+    }
+}

@@ -68,16 +68,36 @@ pub(super) fn meet(a: &Triangle, b: &Triangle) -> bool {
         0 => strangers_meet(a, b),
         // All they share besides the vertex would end at the edge opposite it in a or in b.
         1 => {
-            let [_, a1, a2] = a.turned_to(shared[0].0);
+            let [v, a1, a2] = a.turned_to(shared[0].0);
             let [_, b1, b2] = b.turned_to(shared[0].1);
-            b.meets_segment(a1, a2) || a.meets_segment(b1, b2)
+            let normal = (a1 + a2) - (b1 + b2);
+            !parted(&[a1, a2], &[b1, b2], v, normal)
+                && (b.meets_segment(a1, a2) || a.meets_segment(b1, b2))
         }
         2 => folded(a, b, shared[0], shared[1]),
         _ => true,
     }
 }
 
+/// How much of a sum of products must be left to trust its sign: far above what rounding can do
+/// to three products of differences, far below any angle that matters for speed.
+const CERTAIN: f64 = 1e-12;
+
+/// Whether a plane through `origin` certainly parts some points from others. Settles most pairs
+/// without a predicate; what it leaves open is judged exactly.
+fn parted(above: &[DVec3], below: &[DVec3], origin: DVec3, normal: DVec3) -> bool {
+    let beyond = |p: DVec3, normal: DVec3| {
+        let offset = p - origin;
+        offset.dot(normal) > CERTAIN * offset.abs().dot(normal.abs())
+    };
+    above.iter().all(|&p| beyond(p, normal)) && below.iter().all(|&p| beyond(p, -normal))
+}
+
 fn strangers_meet(a: &Triangle, b: &Triangle) -> bool {
+    let (from, to): (DVec3, DVec3) = (b.at.iter().sum(), a.at.iter().sum());
+    if parted(&a.at, &b.at, (from + to) / 6.0, to - from) {
+        return false;
+    }
     if a.has_beside(&b.at) || b.has_beside(&a.at) {
         return false;
     }
@@ -91,6 +111,11 @@ fn strangers_meet(a: &Triangle, b: &Triangle) -> bool {
 fn folded(a: &Triangle, b: &Triangle, one: (usize, usize), two: (usize, usize)) -> bool {
     let (u, v) = (a.at[one.0], a.at[two.0]);
     let (p, q) = (a.at[3 - one.0 - two.0], b.at[3 - one.1 - two.1]);
+    let (edge, across) = (v - u, p - q);
+    let normal = across - edge * (across.dot(edge) / edge.length_squared());
+    if parted(&[p], &[q], u, normal) {
+        return false;
+    }
     side(a.at, q) == 0 && {
         let [u, v, p, q] = [u, v, p, q].map(|x| flat(x, a.axis));
         turn([u, v, p]) == turn([u, v, q])

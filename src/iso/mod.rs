@@ -70,8 +70,8 @@ pub fn extract(bricks: &Bricks<f32>, mesher: Mesher, job: &dyn Job) -> Result<Tr
 /// As [`extract`] with [`Mesher::Cone`], and with its guarantee, but edges and corners of the
 /// shape stay sharp: the field is asked for exact crossings and the normals there.
 ///
-/// Costs ten values of the field for every point on an edge of the lattice, about three times the
-/// values that sampling takes. `f` is the field that was sampled; another one spoils the shape, not
+/// Costs ten values of the field for every point on an edge of the lattice, two to three times
+/// what sampling takes. `f` is the field that was sampled; another one spoils the shape, not
 /// the guarantee.
 pub fn extract_sharp(
     bricks: &Bricks<f32>,

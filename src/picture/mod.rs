@@ -7,6 +7,19 @@
 //! The light is a studio's: a soft key from the camera's left, a bright sky all round, a dim
 //! bounce from below. Each of its many directions has a depth map of its own, so that what the
 //! mesh hides from them is dark: recesses, undersides, and the ground where the feet stand.
+//!
+//! ```
+//! use fieldgraft::{mesh::TriMesh, picture};
+//! use glam::DVec3;
+//!
+//! let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+//! let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+//! let style = picture::Style { size: [64, 48], ..Default::default() };
+//! let image = picture::render(&TriMesh { points, faces }, &style)?;
+//! assert_eq!(image.get(0, 0), Some(style.background));
+//! assert_ne!(image.get(32, 24), Some(style.background));
+//! # Ok::<(), picture::PictureError>(())
+//! ```
 
 mod camera;
 mod depth_map;
