@@ -1,5 +1,46 @@
 //! Triangle meshes and their files. A [`TriMesh`] is plain data: points in millimetres, Z up,
 //! faces counter-clockwise seen from outside.
+//!
+//! [`read`] takes files as they are: what is odd about their geometry is counted in [`Found`], not
+//! refused. [`write()`] makes files that read back as the same mesh, or none.
+//!
+//! - A *shell* is a set of faces that hang together by edges; it is *open* when one of its edges
+//!   has a single face.
+//! - To *weld* is to merge points at exactly the same position; to *snap* is to round positions to
+//!   f32, as files hold them.
+//!
+//! ```
+//! use fieldgraft::mesh::{Assume, TriMesh, read, write};
+//! use glam::DVec3;
+//!
+//! let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+//! let mesh = TriMesh { points, faces: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]] };
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("corner.ply");
+//! write(&path, &mesh, "an example", false)?;
+//! let loaded = read(&path, Assume::default())?;
+//! assert_eq!(loaded.mesh, mesh);
+//! assert_eq!(loaded.found.to_string(), "4 triangles, 4 points, 1 shell");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod edges;
+mod error;
+mod found;
+mod frame;
+mod polygon;
+mod read;
+mod soup;
+mod weld;
+mod write;
+
+pub use edges::shells;
+pub use error::MeshError;
+pub use found::Found;
+pub use frame::{Assume, Unit, UnknownWord, Up};
+pub use read::{Loaded, read};
+pub use weld::{snap, weld};
+pub use write::{check_output, write};
 
 use crate::num::Aabb;
 use glam::{DAffine3, DVec3};

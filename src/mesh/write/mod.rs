@@ -1,0 +1,268 @@
+//! Mesh files out.
+
+mod glb;
+mod obj;
+mod ply;
+mod stl;
+#[cfg(test)]
+mod tests;
+
+use super::{
+    TriMesh,
+    error::MeshError,
+    read::{Format, kind_name, parse},
+    weld::welded,
+};
+use std::{
+    fmt::Display,
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+/// The formats that can be written.
+#[derive(Clone, Copy)]
+enum Target {
+    Stl,
+    Obj,
+    Ply,
+    Glb,
+}
+
+/// Writes a mesh as its extension says (`stl`, `obj`, `ply`, `glb`; the binary forms) and returns
+/// the bytes written. `note`, such as `recipe=1f3a`, goes into the header or a comment.
+///
+/// Positions are rounded to f32. The file is read back before it takes its place: STL must weld by
+/// exact position to the same points and faces (points that no face uses do not count), the others
+/// must give the very same lists. It is written beside its place and renamed into it.
+///
+/// # Errors
+/// No triangles; a face or position that is not sound; an existing file without `force`; a mesh
+/// that does not survive the rounding; what the system refuses. Nothing is written then.
+pub fn write(path: &Path, mesh: &TriMesh, note: &str, force: bool) -> Result<u64, MeshError> {
+    let target = target(path, force)?;
+    let unfaithful = |why: String| MeshError::Unfaithful {
+        path: path.into(),
+        why,
+    };
+    if mesh.faces.is_empty() {
+        return Err(MeshError::Empty {
+            path: path.into(),
+            why: "no triangles to write".into(),
+        });
+    }
+    sound(mesh).map_err(unfaithful)?;
+    let bytes = encode(target, mesh, &plain(note)).map_err(unfaithful)?;
+    same(&bytes, target, mesh).map_err(unfaithful)?;
+    place(path, &bytes, force)?;
+    Ok(bytes.len() as u64)
+}
+
+/// Whether [`write()`] would take this path: a known extension, a folder that is there, and nothing
+/// there already (with `force`, no more than a file). Ask before long work.
+pub fn check_output(path: &Path, force: bool) -> Result<(), MeshError> {
+    target(path, force).map(|_| ())
+}
+
+fn target(path: &Path, force: bool) -> Result<Target, MeshError> {
+    let extension = path
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase();
+    let target = match extension.as_str() {
+        "stl" => Target::Stl,
+        "obj" => Target::Obj,
+        "ply" => Target::Ply,
+        "glb" => Target::Glb,
+        _ => {
+            let known = "writable are stl, obj, ply, glb";
+            return Err(MeshError::Format {
+                path: path.into(),
+                extension,
+                known,
+            });
+        }
+    };
+    if let Ok(m) = fs::metadata(path)
+        && !m.is_file()
+    {
+        return Err(MeshError::NotAFile {
+            path: path.into(),
+            kind: kind_name(m.file_type()),
+        });
+    }
+    if !force && fs::symlink_metadata(path).is_ok() {
+        return Err(MeshError::Exists { path: path.into() });
+    }
+    let folder = folder(path);
+    match fs::metadata(&folder).and_then(|_| folder.read_dir()) {
+        Ok(_) => Ok(target),
+        Err(cause) => Err(MeshError::Io {
+            path: path.into(),
+            doing: "write",
+            cause,
+        }),
+    }
+}
+
+fn folder(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p.to_path_buf(),
+        _ => PathBuf::from("."),
+    }
+}
+
+/// All indices in range, all used positions within f32.
+fn sound(mesh: &TriMesh) -> Result<(), String> {
+    for (i, &v) in mesh.faces.iter().flatten().enumerate() {
+        let Some(p) = mesh.points.get(v as usize) else {
+            let count = mesh.points.len();
+            return Err(format!(
+                "face {} has point {v}, but there are {count} points",
+                i / 3
+            ));
+        };
+        if !p.as_vec3().is_finite() {
+            return Err(format!("point {v} is {p}, which f32 cannot hold"));
+        }
+    }
+    Ok(())
+}
+
+/// A note that no header can trip over: printable ASCII without backslash.
+fn plain(note: &str) -> String {
+    note.chars()
+        .map(|c| {
+            if (' '..='~').contains(&c) && c != '\\' {
+                c
+            } else {
+                '?'
+            }
+        })
+        .collect()
+}
+
+/// A position as the files hold it: f32, no negative zero.
+fn rounded(mesh: &TriMesh, v: u32) -> [f32; 3] {
+    mesh.points[v as usize]
+        .as_vec3()
+        .to_array()
+        .map(|x| x + 0.0)
+}
+
+fn encode(target: Target, mesh: &TriMesh, note: &str) -> Result<Vec<u8>, String> {
+    let many = |n: usize, what: &str| match u32::try_from(n) {
+        Ok(n) if n <= i32::MAX as u32 => Ok(n),
+        _ => Err(format!("{n} {what} are more than the format can count")),
+    };
+    let (points, faces) = (
+        many(mesh.points.len(), "points")?,
+        many(mesh.faces.len(), "faces")?,
+    );
+    match target {
+        Target::Stl => Ok(stl::encode(mesh, faces, note)),
+        Target::Obj => Ok(obj::encode(mesh, note)),
+        Target::Ply => Ok(ply::encode(mesh, points, faces, note)),
+        Target::Glb => glb::encode(mesh, note),
+    }
+}
+
+/// Reads the bytes again and compares.
+fn same(bytes: &[u8], target: Target, mesh: &TriMesh) -> Result<(), String> {
+    let format = match target {
+        Target::Stl => Format::Stl,
+        Target::Obj => Format::Obj,
+        Target::Ply => Format::Ply,
+        Target::Glb => Format::Gltf,
+    };
+    let back = parse(bytes, format, Path::new(""), format.up(), format.unit());
+    let (back, _) = back.map_err(|f| format!("{}: {}", f.place, f.why))?;
+    match target {
+        Target::Stl => same_welded(&back, mesh),
+        _ => same_lists(&back, mesh),
+    }
+}
+
+fn same_lists(back: &TriMesh, mesh: &TriMesh) -> Result<(), String> {
+    differs("points", back.points.len(), mesh.points.len())?;
+    differs("faces", back.faces.len(), mesh.faces.len())?;
+    if let Some(i) = (0..back.faces.len()).find(|&i| back.faces[i] != mesh.faces[i]) {
+        return differs(
+            &format!("face {i}"),
+            format!("{:?}", back.faces[i]),
+            format!("{:?}", mesh.faces[i]),
+        );
+    }
+    let single = |m: &TriMesh, i: usize| m.points[i].as_vec3();
+    match (0..back.points.len()).find(|&i| single(back, i) != single(mesh, i)) {
+        Some(i) => differs(&format!("point {i}"), single(back, i), single(mesh, i)),
+        None => Ok(()),
+    }
+}
+
+fn differs<T: PartialEq + Display>(what: &str, back: T, mesh: T) -> Result<(), String> {
+    if back == mesh {
+        return Ok(());
+    }
+    Err(format!(
+        "read back, {what}: {back}, but the mesh has {mesh}"
+    ))
+}
+
+/// Whether welding the soup gives the mesh: each of its points one point, each face a face.
+fn same_welded(soup: &TriMesh, mesh: &TriMesh) -> Result<(), String> {
+    const FREE: u32 = u32::MAX;
+    let (back, counts) = welded(soup);
+    if counts.collapsed > 0 {
+        let n = counts.collapsed;
+        return Err(format!(
+            "{n} faces lose a corner when positions are rounded to f32"
+        ));
+    }
+    let mut to_mesh = vec![FREE; back.points.len()];
+    let mut to_back = vec![FREE; mesh.points.len()];
+    differs("faces", back.faces.len(), mesh.faces.len())?;
+    for (b, m) in back.faces.iter().flatten().zip(mesh.faces.iter().flatten()) {
+        let (there, here) = (&mut to_back[*m as usize], &mut to_mesh[*b as usize]);
+        if *here != FREE && *here != *m {
+            let at = back.points[*b as usize];
+            return Err(format!(
+                "points {here} and {m} of the mesh coincide in f32, at {at}"
+            ));
+        }
+        if *there != FREE && *there != *b {
+            return Err(format!("point {m} of the mesh comes back as two"));
+        }
+        (*there, *here) = (*b, *m);
+    }
+    Ok(())
+}
+
+/// Writes beside the place and renames into it, so that no half file is ever there.
+fn place(path: &Path, bytes: &[u8], force: bool) -> Result<(), MeshError> {
+    let failed = |cause| MeshError::Io {
+        path: path.into(),
+        doing: "write",
+        cause,
+    };
+    let mut beside = tempfile::Builder::new();
+    beside.prefix(".fieldgraft-").suffix(".part");
+    // Else the file would stay readable by its owner only, as temporary files are.
+    #[cfg(unix)]
+    beside.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = beside.tempfile_in(folder(path)).map_err(failed)?;
+    file.write_all(bytes).map_err(failed)?;
+    let kept = if force {
+        file.persist(path)
+    } else {
+        file.persist_noclobber(path)
+    };
+    match kept {
+        Ok(_) => Ok(()),
+        Err(e) if e.error.kind() == std::io::ErrorKind::AlreadyExists => {
+            Err(MeshError::Exists { path: path.into() })
+        }
+        Err(e) => Err(failed(e.error)),
+    }
+}
