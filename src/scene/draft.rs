@@ -129,11 +129,10 @@ impl Draft {
                     Stop::Cancelled(c) => c.into(),
                 })?;
             notes.extend(found);
-            let (field, volume) = live::sampled(exact.clone(), step, job)?;
+            let (field, volume) = live::sampled(&*exact, step, job)?;
             shapes.push(LiveShape {
                 name,
                 field,
-                exact,
                 volume,
                 bounds,
             });

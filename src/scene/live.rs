@@ -34,8 +34,6 @@ pub struct LiveShape {
     pub name: String,
     /// The field that is looked up: its sampled form.
     pub field: Shared,
-    /// The field itself.
-    pub exact: Shared,
     /// Volume of the inside, mm³.
     pub volume: f64,
     /// The box round it, mm.
@@ -196,8 +194,8 @@ fn options(entry: &ShapeEntry) -> MeshOptions {
 }
 
 /// The sampled form of a field at a fine step, mm.
-pub(super) fn sampled(exact: Shared, step: f64, job: &dyn Job) -> Result<(Shared, f64), Cancelled> {
-    let sampled = Sampled::new(&*exact, step, job)?;
+pub(super) fn sampled(exact: &dyn Field, step: f64, job: &dyn Job) -> Result<(Shared, f64), Cancelled> {
+    let sampled = Sampled::new(exact, step, job)?;
     let volume = sampled.volume();
-    Ok((Arc::new(sampled) as Arc<dyn Field>, volume))
+    Ok((Arc::new(sampled), volume))
 }

@@ -1,0 +1,12 @@
+/// `check` and its JSON.
+mod check;
+/// `convert`: meshes and solids in, meshes and fields out.
+mod convert;
+/// What is wrong, and what is said about it.
+mod errors;
+/// `morph` and `run`: files, reports, limits.
+mod make;
+/// The recipes and solids that ship with the crate.
+mod shipped;
+/// `schema`, `completions`, `man`.
+mod texts;

@@ -1,0 +1,8 @@
+//! The one test binary: what needs the whole crate, or the built command.
+
+/// The command: messages, exit codes, files.
+mod cli;
+/// A module imports from lower floors only.
+mod floors;
+/// Running the command and looking at what it did.
+mod util;
