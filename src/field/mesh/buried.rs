@@ -12,6 +12,10 @@ use rayon::prelude::*;
 
 /// Faces worked on between two looks at the job and the limits.
 const CHUNK: usize = 2048;
+/// Faces looked at to tell that a patch is of one class.
+const PROBES: usize = 8;
+/// Faces lower than this many slacks are no sheets but leftovers at seams.
+const SHEET: f64 = 4.0;
 
 /// The surface, ready for measuring distances.
 #[derive(Clone, Debug, Default)]
@@ -19,13 +23,16 @@ pub(super) struct Surface {
     pub triangles: Vec<[DVec3; 3]>,
     /// For each: how far a foot must lie within it (mm) for its side to tell inside from outside.
     pub certain: Vec<f64>,
-    pub area: f64,
+    /// Triangles left out although the sign may change across them after all.
+    pub ghosts: Vec<[DVec3; 3]>,
+    /// Culled pieces of faces in contact: a face so near to one of them does not tell the sign.
+    pub culled: Vec<[DVec3; 3]>,
+    /// Faces with outside on both sides over most of their area: sheets.
+    pub sheets: Vec<[DVec3; 3]>,
     pub buried_area: f64,
     pub nothing_area: f64,
     pub buried_faces: usize,
     pub contact_faces: usize,
-    /// Whether pieces remain that are cut only as far as the floor.
-    pub doubtful: bool,
 }
 
 /// Faces over shared points, with what is asked of them again and again.
@@ -42,6 +49,40 @@ fn area(t: &[DVec3]) -> f64 {
     (1..t.len().saturating_sub(1))
         .map(|i| (t[i] - t[0]).cross(t[i + 1] - t[0]).length() * 0.5)
         .sum()
+}
+
+/// Least height of a triangle.
+fn height(t: &[DVec3; 3]) -> f64 {
+    let longest = (0..3)
+        .map(|i| t[i].distance(t[(i + 1) % 3]))
+        .fold(0.0, f64::max);
+    2.0 * area(t) / longest
+}
+
+/// Whether two faces with a common side lie flat on each other, within `slack`; corner `apex` of
+/// the first is the one off that side.
+fn folded(
+    t: &[DVec3; 3],
+    apex: usize,
+    u: &[DVec3; 3],
+    g: [u32; 3],
+    f: [u32; 3],
+    slack: f64,
+) -> bool {
+    let (a, b, p) = (t[(apex + 1) % 3], t[(apex + 2) % 3], t[apex]);
+    let Some(q) = (0..3).find(|&i| !f.contains(&g[i])).map(|i| u[i]) else {
+        return true;
+    };
+    let along = (b - a).normalize_or_zero();
+    let across = |x: DVec3| (x - a) - along * (x - a).dot(along);
+    let (p, q) = (across(p), across(q));
+    // the lower one against the plane of the higher one
+    let (low, high) = if p.length() < q.length() {
+        (p, q)
+    } else {
+        (q, p)
+    };
+    low.dot(high) > 0.0 && low.reject_from(high).length() < slack
 }
 
 fn middle(t: &[DVec3; 3]) -> DVec3 {
@@ -74,8 +115,12 @@ impl Surface {
         let mut surface = Self::default();
         for (group, class, margin) in all.untouched(&contacts, job)? {
             for f in group {
-                surface.add(&all.triangles[f as usize], class, margin);
+                let t = &all.triangles[f as usize];
+                surface.add(t, class, margin);
                 surface.buried_faces += usize::from(class == Class::Buried);
+                if class == Class::Nothing && height(t) > SHEET * scale.slack {
+                    surface.sheets.push(*t);
+                }
             }
         }
         all.touched(&contacts, &mut surface, job)?;
@@ -83,21 +128,25 @@ impl Surface {
     }
 
     fn add(&mut self, corners: &[DVec3], class: Class, margin: f64) {
-        let size = area(corners);
         match class {
-            Class::Buried => self.buried_area += size,
-            Class::Nothing => self.nothing_area += size,
-            Class::Surface | Class::Reversed => {
-                self.area += size;
-                for i in 1..corners.len().saturating_sub(1) {
-                    let [b, c] = if class == Class::Surface {
-                        [i, i + 1]
-                    } else {
-                        [i + 1, i]
-                    };
-                    self.triangles.push([corners[0], corners[b], corners[c]]);
-                    self.certain.push(margin);
-                }
+            Class::Buried => self.buried_area += area(corners),
+            Class::Nothing => self.nothing_area += area(corners),
+            Class::Surface | Class::Reversed => {}
+        }
+        for i in 1..corners.len().saturating_sub(1) {
+            let [b, c] = if class == Class::Reversed {
+                [i + 1, i]
+            } else {
+                [i, i + 1]
+            };
+            let triangle = [corners[0], corners[b], corners[c]];
+            if matches!(class, Class::Surface | Class::Reversed) {
+                self.triangles.push(triangle);
+                self.certain.push(margin);
+            } else if margin == f64::INFINITY {
+                self.ghosts.push(triangle);
+            } else if margin > 0.0 {
+                self.culled.push(triangle);
             }
         }
     }
@@ -166,7 +215,8 @@ impl Faces<'_> {
                     );
                     !apart(&s, u, slack) || !apart(&r, t, slack)
                 }
-                _ => false,
+                [k, l] => folded(t, 3 - k - l, u, g, f, slack),
+                _ => true,
             }
         });
         found.sort_unstable();
@@ -218,7 +268,7 @@ impl Faces<'_> {
         Ok(patches.into_par_iter().flat_map_iter(patch).collect())
     }
 
-    /// The class of a patch of a closed shell, by its largest face and two more.
+    /// The class of a patch of a closed shell, by its largest face and some more.
     fn patch(&self, patch: &[u32]) -> Option<Class> {
         let size = |&&f: &&u32| area(&self.triangles[f as usize]);
         let largest = patch.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
@@ -229,11 +279,15 @@ impl Faces<'_> {
             )
         };
         let first = class(*largest);
-        let more = [patch[patch.len() / 3], patch[patch.len() * 2 / 3]];
-        more.into_iter().all(|f| class(f) == first).then_some(first)
+        let step = patch.len().div_ceil(PROBES);
+        patch
+            .iter()
+            .step_by(step)
+            .all(|&f| class(f) == first)
+            .then_some(first)
     }
 
-    /// The class of one face, doubtful ones being surface, and its margin of certainty.
+    /// The class of one face, surface if part of it seems to be, and its margin of certainty.
     fn alone(&self, f: u32) -> (Class, f64) {
         let (t, n) = (&self.triangles[f as usize], self.normals[f as usize]);
         let centre = middle(t);
@@ -284,11 +338,16 @@ impl Faces<'_> {
                         .pieces(f as usize, contacts)
                 })
                 .collect();
-            for face in pieces {
+            for (&f, face) in chunk.iter().zip(pieces) {
                 out.buried_faces += usize::from(face.iter().any(|p| p.class == Class::Buried));
+                let t = &self.triangles[f as usize];
+                let empty = face.iter().filter(|p| p.class == Class::Nothing);
+                let empty: f64 = empty.map(|p| area(&p.corners)).sum();
+                if empty > 0.5 * area(t) && height(t) > SHEET * self.scale.slack {
+                    out.sheets.push(*t);
+                }
                 for p in face {
                     let doubtful = p.doubtful || full;
-                    out.doubtful |= doubtful;
                     let margin = self.margin(&p.corners, doubtful);
                     out.add(&p.corners, p.class, margin);
                 }

@@ -1,5 +1,6 @@
 //! The signed distance to the surface of what is solid.
 
+use super::buried::Surface;
 use super::inside::Inside;
 use crate::bvh::{Bvh, Hit, Nearest};
 use crate::num::{Aabb, Interval};
@@ -7,6 +8,8 @@ use glam::DVec3;
 
 /// Points whose signs are found together.
 const RUN: usize = 64;
+/// And where they are not the same all over.
+const OCTET: usize = 8;
 
 /// The surface of a solid, and where it is inside.
 #[derive(Clone, Debug)]
@@ -14,6 +17,10 @@ pub(super) struct Solid {
     surface: Bvh,
     /// For each surface triangle, how far a foot must lie within it (mm) for its side to tell.
     certain: Vec<f64>,
+    /// What is not in `surface` although the sign may change there.
+    ghosts: Bvh,
+    /// Culled, but perhaps within `blur` of a kept one.
+    culled: Bvh,
     inside: Inside,
     /// Nearer than this a point is on the surface, mm.
     touch: f64,
@@ -34,25 +41,22 @@ fn signed(distance: f64, inside: bool) -> f64 {
 }
 
 impl Solid {
-    pub(super) fn new(
-        triangles: &[[DVec3; 3]],
-        certain: Vec<f64>,
-        inside: Inside,
-        blur: f64,
-    ) -> Self {
+    pub(super) fn new(surface: Surface, inside: Inside, blur: f64) -> Self {
         let touch = 1e-12 * inside.bounds().size().length();
-        Self {
-            surface: Bvh::new(triangles),
-            certain,
-            inside,
-            touch,
-            blur,
-        }
+        let Surface { triangles, certain, ghosts, culled, .. } = surface;
+        let [surface, ghosts, culled] = [triangles, ghosts, culled].map(|t| Bvh::new(&t));
+        Self { surface, certain, ghosts, culled, inside, touch, blur }
     }
 
     /// The box outside which nothing is inside.
     pub(super) fn bounds(&self) -> Aabb {
         *self.inside.bounds()
+    }
+
+    /// Whether in that ball the sign changes nowhere but at the surface (and at the box).
+    fn sharp(&self, centre: DVec3, radius: f64) -> bool {
+        let reach = radius + self.blur;
+        self.ghosts.nearest_within(centre, reach).is_none() && self.inside.sharp(centre, radius)
     }
 
     /// Whether the nearest face alone tells that `p` is inside.
@@ -65,7 +69,9 @@ impl Solid {
             .get(near.face as usize)
             .copied()
             .unwrap_or(f64::INFINITY);
-        (near.inside > margin).then_some(near.height < 0.0)
+        let hidden =
+            || margin > 0.0 && self.culled.nearest_within(near.point, self.blur).is_some();
+        (near.inside > margin && !hidden()).then_some(near.height < 0.0)
     }
 
     pub(super) fn value(&self, p: DVec3) -> f64 {
@@ -91,26 +97,40 @@ impl Solid {
 
     pub(super) fn values(&self, at: &[DVec3], out: &mut [f64]) {
         let hits = self.surface.nearest_all(at);
-        let mut seeds = Vec::with_capacity(RUN + 1);
+        let mut known = Vec::with_capacity(RUN + 1);
         for ((at, hits), out) in at
             .chunks(RUN)
             .zip(hits.chunks(RUN))
             .zip(out.chunks_mut(RUN))
         {
-            let run = Aabb::of(at.iter().copied());
-            let radius = run.radius();
-            if self.inside.sharp(run.centre(), 2.0 * radius) {
-                // the last point of the run before, if it reaches this one
-                let last = seeds.pop();
-                seeds.clear();
-                seeds.extend(last);
-                self.spread(at, hits, radius, &mut seeds, out);
-            } else {
-                seeds.clear();
-                for ((&p, hit), f) in at.iter().zip(hits).zip(out) {
-                    let inside = hit.distance2.sqrt() > self.touch && self.inside.at(p);
-                    *f = signed(hit.distance2.sqrt(), inside);
-                }
+            // the last point of the run before may reach this one
+            let last = known.pop();
+            known.clear();
+            known.extend(last);
+            self.signs(at, hits, &mut known, out);
+        }
+    }
+
+    /// Values of a run: together where the sign is sharp, else in smaller runs.
+    fn signs(&self, at: &[DVec3], hits: &[Hit], known: &mut Vec<Known>, out: &mut [f64]) {
+        let run = Aabb::of(at.iter().copied());
+        let radius = run.radius();
+        if self.sharp(run.centre(), 2.0 * radius) {
+            self.spread(at, hits, radius, known, out);
+        } else if at.len() > OCTET {
+            for ((at, hits), out) in at
+                .chunks(OCTET)
+                .zip(hits.chunks(OCTET))
+                .zip(out.chunks_mut(OCTET))
+            {
+                known.clear();
+                self.signs(at, hits, known, out);
+            }
+        } else {
+            known.clear();
+            for ((&p, hit), f) in at.iter().zip(hits).zip(out) {
+                let distance = hit.distance2.sqrt();
+                *f = signed(distance, distance > self.touch && self.inside.at(p));
             }
         }
     }
@@ -179,7 +199,7 @@ impl Solid {
         let range = if self.inside.is_closed() {
             let inside = self.inside.bounds().contains(centre) && self.raw(centre, &near);
             Interval::ball(signed(d, inside), radius + self.blur)
-        } else if d > radius + self.blur && self.inside.sharp(centre, radius) {
+        } else if d > radius + self.blur && self.sharp(centre, radius) {
             let inside = self.inside.at(centre);
             let cut = inside && !self.holds(b);
             if cut {
