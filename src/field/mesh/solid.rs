@@ -43,9 +43,23 @@ fn signed(distance: f64, inside: bool) -> f64 {
 impl Solid {
     pub(super) fn new(surface: Surface, inside: Inside, blur: f64) -> Self {
         let touch = 1e-12 * inside.bounds().size().length();
-        let Surface { triangles, certain, ghosts, culled, .. } = surface;
+        let Surface {
+            triangles,
+            certain,
+            ghosts,
+            culled,
+            ..
+        } = surface;
         let [surface, ghosts, culled] = [triangles, ghosts, culled].map(|t| Bvh::new(&t));
-        Self { surface, certain, ghosts, culled, inside, touch, blur }
+        Self {
+            surface,
+            certain,
+            ghosts,
+            culled,
+            inside,
+            touch,
+            blur,
+        }
     }
 
     /// The box outside which nothing is inside.
@@ -69,8 +83,7 @@ impl Solid {
             .get(near.face as usize)
             .copied()
             .unwrap_or(f64::INFINITY);
-        let hidden =
-            || margin > 0.0 && self.culled.nearest_within(near.point, self.blur).is_some();
+        let hidden = || margin > 0.0 && self.culled.nearest_within(near.point, self.blur).is_some();
         (near.inside > margin && !hidden()).then_some(near.height < 0.0)
     }
 
