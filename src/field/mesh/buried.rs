@@ -17,12 +17,23 @@ const PROBES: usize = 8;
 /// Faces lower than this many slacks are no sheets but leftovers at seams.
 const SHEET: f64 = 4.0;
 
+/// When the side of a face on which a point lies tells whether it is inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Trust {
+    /// Where the point's foot lies within the face by more than this, mm.
+    Within(f64),
+    /// Near another point on the same side whose sign is known.
+    Local,
+    /// Nowhere.
+    Never,
+}
+
 /// The surface, ready for measuring distances.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Surface {
     pub triangles: Vec<[DVec3; 3]>,
-    /// For each: how far a foot must lie within it (mm) for its side to tell inside from outside.
-    pub certain: Vec<f64>,
+    /// For each, when its sides tell inside from outside.
+    pub trust: Vec<Trust>,
     /// Triangles left out although the sign may change across them after all.
     pub ghosts: Vec<[DVec3; 3]>,
     /// Culled pieces of faces in contact: a face so near to one of them does not tell the sign.
@@ -113,10 +124,10 @@ impl Surface {
         };
         let contacts = all.contacts(job)?;
         let mut surface = Self::default();
-        for (group, class, margin) in all.untouched(&contacts, job)? {
+        for (group, class, trust) in all.untouched(&contacts, job)? {
             for f in group {
                 let t = &all.triangles[f as usize];
-                surface.add(t, class, margin);
+                surface.add(t, class, trust);
                 surface.buried_faces += usize::from(class == Class::Buried);
                 if class == Class::Nothing && height(t) > SHEET * scale.slack {
                     surface.sheets.push(*t);
@@ -127,7 +138,7 @@ impl Surface {
         Ok(surface)
     }
 
-    fn add(&mut self, corners: &[DVec3], class: Class, margin: f64) {
+    fn add(&mut self, corners: &[DVec3], class: Class, trust: Trust) {
         match class {
             Class::Buried => self.buried_area += area(corners),
             Class::Nothing => self.nothing_area += area(corners),
@@ -140,13 +151,14 @@ impl Surface {
                 [i, i + 1]
             };
             let triangle = [corners[0], corners[b], corners[c]];
-            if matches!(class, Class::Surface | Class::Reversed) {
-                self.triangles.push(triangle);
-                self.certain.push(margin);
-            } else if margin == f64::INFINITY {
-                self.ghosts.push(triangle);
-            } else if margin > 0.0 {
-                self.culled.push(triangle);
+            match (class, trust) {
+                (Class::Surface | Class::Reversed, _) => {
+                    self.triangles.push(triangle);
+                    self.trust.push(trust);
+                }
+                (_, Trust::Within(margin)) if margin > 0.0 => self.culled.push(triangle),
+                (_, Trust::Within(_)) => {}
+                _ => self.ghosts.push(triangle),
             }
         }
     }
@@ -223,19 +235,19 @@ impl Faces<'_> {
         found
     }
 
-    /// Faces without contacts, by patches of one class each, with the margin of certainty.
+    /// Faces without contacts, by patches of one class each, with their trust.
     fn untouched(
         &self,
         contacts: &[Vec<u32>],
         job: &dyn Job,
-    ) -> Result<Vec<(Vec<u32>, Class, f64)>, Cancelled> {
+    ) -> Result<Vec<(Vec<u32>, Class, Trust)>, Cancelled> {
         check(job)?;
         let free =
             |f: u32| contacts[f as usize].is_empty() && self.normals[f as usize] != DVec3::ZERO;
         let all: Vec<u32> = (0..self.faces.len() as u32).filter(|&f| free(f)).collect();
         let alone = |f: u32| {
-            let (class, margin) = self.alone(f);
-            (vec![f], class, margin)
+            let (class, trust) = self.alone(f);
+            (vec![f], class, trust)
         };
         if !self.inside.is_closed() {
             // the winding number varies along an open shell
@@ -258,11 +270,11 @@ impl Faces<'_> {
             .map(|c| c.iter().map(|r| r.1).collect())
             .collect();
         let patch = |patch: Vec<u32>| match self.patch(&patch) {
-            Some(class) => vec![(patch, class, 0.0)],
+            Some(class) => vec![(patch, class, Trust::Within(0.0))],
             None => patch
                 .into_iter()
                 .map(alone)
-                .map(|(f, c, _)| (f, c, f64::INFINITY))
+                .map(|(f, c, _)| (f, c, Trust::Never))
                 .collect(),
         };
         Ok(patches.into_par_iter().flat_map_iter(patch).collect())
@@ -287,8 +299,8 @@ impl Faces<'_> {
             .then_some(first)
     }
 
-    /// The class of one face, surface if part of it seems to be, and its margin of certainty.
-    fn alone(&self, f: u32) -> (Class, f64) {
+    /// The class of one face, surface if part of it seems to be, and its trust.
+    fn alone(&self, f: u32) -> (Class, Trust) {
         let (t, n) = (&self.triangles[f as usize], self.normals[f as usize]);
         let centre = middle(t);
         let class = self.class(centre, n);
@@ -298,15 +310,12 @@ impl Faces<'_> {
             .inside
             .sharp(centre + off, radius + 2.0 * self.scale.offset)
         {
-            return (class, 0.0);
+            return (class, Trust::Within(0.0));
         }
         let toward = |p: DVec3| self.class(centre + (p - centre) * 0.75, n);
         let is_surface = |c: Class| matches!(c, Class::Surface | Class::Reversed);
         let seen = [class, toward(t[0]), toward(t[1]), toward(t[2])];
-        (
-            seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class),
-            f64::INFINITY,
-        )
+        (seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class), Trust::Local)
     }
 
     /// Cuts the faces in contact and adds what is surface.
@@ -348,8 +357,8 @@ impl Faces<'_> {
                 }
                 for p in face {
                     let doubtful = p.doubtful || full;
-                    let margin = self.margin(&p.corners, doubtful);
-                    out.add(&p.corners, p.class, margin);
+                    let trust = self.trust(&p.corners, doubtful);
+                    out.add(&p.corners, p.class, trust);
                 }
             }
         }
@@ -357,16 +366,12 @@ impl Faces<'_> {
     }
 
     /// Near the line where faces meet, a piece's side does not tell.
-    fn margin(&self, corners: &[DVec3], doubtful: bool) -> f64 {
+    fn trust(&self, corners: &[DVec3], doubtful: bool) -> Trust {
         let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let radius = corners
-            .iter()
-            .fold(0.0, |r: f64, p| r.max(p.distance(centre)));
-        let sharp = self.inside.is_closed() || self.inside.sharp(centre, radius);
-        if doubtful || !sharp {
-            f64::INFINITY
-        } else {
-            2.0 * self.scale.slack
+        let radius = corners.iter().fold(0.0, |r: f64, p| r.max(p.distance(centre)));
+        if doubtful || !self.inside.sharp(centre, radius) {
+            return Trust::Never;
         }
+        Trust::Within(2.0 * self.scale.slack)
     }
 }

@@ -1,6 +1,6 @@
 //! The signed distance to the surface of what is solid.
 
-use super::buried::Surface;
+use super::buried::{Surface, Trust};
 use super::inside::Inside;
 use crate::bvh::{Bvh, Hit, Nearest};
 use crate::num::{Aabb, Interval};
@@ -15,8 +15,8 @@ const OCTET: usize = 8;
 #[derive(Clone, Debug)]
 pub(super) struct Solid {
     surface: Bvh,
-    /// For each surface triangle, how far a foot must lie within it (mm) for its side to tell.
-    certain: Vec<f64>,
+    /// For each surface triangle, when its sides tell.
+    trust: Vec<Trust>,
     /// What is not in `surface` although the sign may change there.
     ghosts: Bvh,
     /// Culled, but perhaps within `blur` of a kept one.
@@ -45,7 +45,7 @@ impl Solid {
         let touch = 1e-12 * inside.bounds().size().length();
         let Surface {
             triangles,
-            certain,
+            trust,
             ghosts,
             culled,
             ..
@@ -53,7 +53,7 @@ impl Solid {
         let [surface, ghosts, culled] = [triangles, ghosts, culled].map(|t| Bvh::new(&t));
         Self {
             surface,
-            certain,
+            trust,
             ghosts,
             culled,
             inside,
@@ -78,13 +78,14 @@ impl Solid {
         if near.distance <= self.touch {
             return Some(false);
         }
-        let margin = self
-            .certain
-            .get(near.face as usize)
-            .copied()
-            .unwrap_or(f64::INFINITY);
-        let hidden = || margin > 0.0 && self.culled.nearest_within(near.point, self.blur).is_some();
+        let Trust::Within(margin) = self.trust(near) else { return None };
+        let hidden =
+            || margin > 0.0 && self.culled.nearest_within(near.point, self.blur).is_some();
         (near.inside > margin && !hidden()).then_some(near.height < 0.0)
+    }
+
+    fn trust(&self, near: &Nearest) -> Trust {
+        self.trust.get(near.face as usize).copied().unwrap_or(Trust::Never)
     }
 
     pub(super) fn value(&self, p: DVec3) -> f64 {
@@ -110,14 +111,11 @@ impl Solid {
 
     pub(super) fn values(&self, at: &[DVec3], out: &mut [f64]) {
         let hits = self.surface.nearest_all(at);
+        // with closed shells the way from one run to the next holds no surprise either
+        let reach = self.inside.is_closed() && self.ghosts.is_empty();
         let mut known = Vec::with_capacity(RUN + 1);
-        for ((at, hits), out) in at
-            .chunks(RUN)
-            .zip(hits.chunks(RUN))
-            .zip(out.chunks_mut(RUN))
-        {
-            // the last point of the run before may reach this one
-            let last = known.pop();
+        for ((at, hits), out) in at.chunks(RUN).zip(hits.chunks(RUN)).zip(out.chunks_mut(RUN)) {
+            let last = known.pop().filter(|_| reach);
             known.clear();
             known.extend(last);
             self.signs(at, hits, &mut known, out);
@@ -173,30 +171,32 @@ impl Solid {
             match near.and_then(|near| self.by_face(&near)) {
                 Some(inside) => {
                     *f = signed(distance, inside);
-                    known.push(Known {
-                        at: p,
-                        distance,
-                        inside,
-                    });
+                    known.push(Known { at: p, distance, inside });
                 }
-                None => open.push(i),
+                None => open.push((i, near.and_then(|near| self.side(&near)))),
             }
         }
-        for i in open {
+        let mut sides: Vec<((u32, bool), bool)> = vec![];
+        for (i, side) in open {
             let (p, distance) = (at[i], out[i]);
+            let same = || sides.iter().find(|s| Some(s.0) == side).map(|s| s.1);
             let reaches =
                 |k: &&Known| k.at.distance(p) < k.distance.max(distance) - self.blur - self.touch;
-            let inside = match known.iter().rev().find(reaches) {
-                Some(k) => k.inside,
-                None => distance > self.touch && self.inside.raw(p),
-            };
+            let reached = || known.iter().rev().find(reaches).map(|k| k.inside);
+            let inside = same()
+                .or_else(reached)
+                .unwrap_or_else(|| distance > self.touch && self.inside.raw(p));
             out[i] = signed(distance, inside);
-            known.push(Known {
-                at: p,
-                distance,
-                inside,
-            });
+            known.push(Known { at: p, distance, inside });
+            sides.extend(side.map(|side| (side, inside)));
         }
+    }
+
+    /// The face and the side of it on which a point lies, if all points there that are near each
+    /// other have the same sign.
+    fn side(&self, near: &Nearest) -> Option<(u32, bool)> {
+        let local = self.trust(near) == Trust::Local && near.distance > self.touch;
+        (local && near.inside > 0.0).then_some((near.face, near.height < 0.0))
     }
 
     pub(super) fn bound(&self, b: &Aabb) -> Interval {
