@@ -45,14 +45,19 @@ impl Rim {
         self.lengths.first().copied().unwrap_or(0.0)
     }
 
-    /// An upper bound of |grad w| per mm over a ball; infinite where the ball touches a rim.
-    pub fn variation(&self, centre: DVec3, radius: f64) -> f64 {
+    /// An upper bound of |grad w| per mm over a ball; infinite where the ball touches a rim or
+    /// as soon as it exceeds `most`.
+    pub fn variation(&self, centre: DVec3, radius: f64, most: f64) -> f64 {
+        let most = most * 4.0 * PI;
         let mut total = 0.0;
         let mut stack = vec![];
         if !self.bvh.is_empty() {
             stack.push(0u32);
         }
         while let Some(index) = stack.pop() {
+            if total > most {
+                return f64::INFINITY;
+            }
             let Node {
                 bounds,
                 first,

@@ -194,6 +194,11 @@ impl Winding {
         }
     }
 
+    /// The winding number as the tree has it at once, off by some hundredths at worst.
+    pub fn rough(&self, q: DVec3) -> f64 {
+        self.tree(q, BETA, &mut Vec::with_capacity(64))
+    }
+
     /// The winding number as the sum over all triangles.
     pub fn exact(&self, q: DVec3) -> f64 {
         self.sum(0, self.bvh.len() as u32, q) / (4.0 * PI)

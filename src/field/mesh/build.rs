@@ -183,24 +183,18 @@ impl<'a> Work<'a> {
         let inside = self.inside(&closed, &open);
         let faces: Vec<_> = used.iter().map(|&f| self.soup.faces[f as usize]).collect();
         let surface = Surface::new(&self.soup.points, &faces, &inside, self.scale, job)?;
-        let sheets = self.sheets(&inside);
+        let mut sheets = self.sheets(&inside);
+        if self.options.thicken.is_some_and(|t| t.which == Which::Open) {
+            sheets.extend(&surface.sheets);
+        }
         let sheet = self.sheet(&sheets);
         self.tell(&surface, sheet.is_some());
-        let solid = (!surface.triangles.is_empty()).then(|| {
-            let Surface {
-                triangles,
-                certain,
-                contact_faces,
-                doubtful,
-                ..
-            } = surface;
-            let blur = match (contact_faces, doubtful) {
-                (0, _) => 0.0,
-                (_, false) => 4.0 * self.scale.slack,
-                (_, true) => self.scale.floor,
-            };
-            Solid::new(&triangles, certain, inside, blur)
-        });
+        let blur = if surface.contact_faces > 0 {
+            4.0 * self.scale.slack
+        } else {
+            0.0
+        };
+        let solid = (!surface.triangles.is_empty()).then(|| Solid::new(surface, inside, blur));
         Ok((solid, sheet))
     }
 
@@ -209,12 +203,8 @@ impl<'a> Work<'a> {
         report.solid = !surface.triangles.is_empty();
         report.buried_faces = surface.buried_faces;
         report.buried_area_share = surface.buried_area / report.area;
-        let double = if thickened {
-            0.0
-        } else {
-            report.double_area_share
-        };
-        report.lost_area_share = surface.nothing_area / report.area + double;
+        let lost = surface.nothing_area / report.area + report.double_area_share;
+        report.lost_area_share = if thickened { 0.0 } else { lost };
         report.contact_faces = surface.contact_faces;
         report.surface_triangles = surface.triangles.len();
     }

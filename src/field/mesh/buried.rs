@@ -12,20 +12,38 @@ use rayon::prelude::*;
 
 /// Faces worked on between two looks at the job and the limits.
 const CHUNK: usize = 2048;
+/// Faces looked at to tell that a patch is of one class.
+const PROBES: usize = 8;
+/// Faces lower than this many slacks are no sheets but leftovers at seams.
+const SHEET: f64 = 4.0;
+
+/// When the side of a face on which a point lies tells whether it is inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Trust {
+    /// Where the point's foot lies within the face by more than this, mm.
+    Within(f64),
+    /// Near another point on the same side whose sign is known.
+    Local,
+    /// Nowhere.
+    Never,
+}
 
 /// The surface, ready for measuring distances.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Surface {
     pub triangles: Vec<[DVec3; 3]>,
-    /// For each: how far a foot must lie within it (mm) for its side to tell inside from outside.
-    pub certain: Vec<f64>,
-    pub area: f64,
+    /// For each, when its sides tell inside from outside.
+    pub trust: Vec<Trust>,
+    /// Triangles left out although the sign may change across them after all.
+    pub ghosts: Vec<[DVec3; 3]>,
+    /// Culled pieces of faces in contact: a face so near to one of them does not tell the sign.
+    pub culled: Vec<[DVec3; 3]>,
+    /// Faces with outside on both sides over most of their area: sheets.
+    pub sheets: Vec<[DVec3; 3]>,
     pub buried_area: f64,
     pub nothing_area: f64,
     pub buried_faces: usize,
     pub contact_faces: usize,
-    /// Whether pieces remain that are cut only as far as the floor.
-    pub doubtful: bool,
 }
 
 /// Faces over shared points, with what is asked of them again and again.
@@ -42,6 +60,40 @@ fn area(t: &[DVec3]) -> f64 {
     (1..t.len().saturating_sub(1))
         .map(|i| (t[i] - t[0]).cross(t[i + 1] - t[0]).length() * 0.5)
         .sum()
+}
+
+/// Least height of a triangle.
+fn height(t: &[DVec3; 3]) -> f64 {
+    let longest = (0..3)
+        .map(|i| t[i].distance(t[(i + 1) % 3]))
+        .fold(0.0, f64::max);
+    2.0 * area(t) / longest
+}
+
+/// Whether two faces with a common side lie flat on each other, within `slack`; corner `apex` of
+/// the first is the one off that side.
+fn folded(
+    t: &[DVec3; 3],
+    apex: usize,
+    u: &[DVec3; 3],
+    g: [u32; 3],
+    f: [u32; 3],
+    slack: f64,
+) -> bool {
+    let (a, b, p) = (t[(apex + 1) % 3], t[(apex + 2) % 3], t[apex]);
+    let Some(q) = (0..3).find(|&i| !f.contains(&g[i])).map(|i| u[i]) else {
+        return true;
+    };
+    let along = (b - a).normalize_or_zero();
+    let across = |x: DVec3| (x - a) - along * (x - a).dot(along);
+    let (p, q) = (across(p), across(q));
+    // the lower one against the plane of the higher one
+    let (low, high) = if p.length() < q.length() {
+        (p, q)
+    } else {
+        (q, p)
+    };
+    low.dot(high) > 0.0 && low.reject_from(high).length() < slack
 }
 
 fn middle(t: &[DVec3; 3]) -> DVec3 {
@@ -72,32 +124,41 @@ impl Surface {
         };
         let contacts = all.contacts(job)?;
         let mut surface = Self::default();
-        for (group, class, margin) in all.untouched(&contacts, job)? {
+        for (group, class, trust) in all.untouched(&contacts, job)? {
             for f in group {
-                surface.add(&all.triangles[f as usize], class, margin);
+                let t = &all.triangles[f as usize];
+                surface.add(t, class, trust);
                 surface.buried_faces += usize::from(class == Class::Buried);
+                if class == Class::Nothing && height(t) > SHEET * scale.slack {
+                    surface.sheets.push(*t);
+                }
             }
         }
         all.touched(&contacts, &mut surface, job)?;
         Ok(surface)
     }
 
-    fn add(&mut self, corners: &[DVec3], class: Class, margin: f64) {
-        let size = area(corners);
+    fn add(&mut self, corners: &[DVec3], class: Class, trust: Trust) {
         match class {
-            Class::Buried => self.buried_area += size,
-            Class::Nothing => self.nothing_area += size,
-            Class::Surface | Class::Reversed => {
-                self.area += size;
-                for i in 1..corners.len().saturating_sub(1) {
-                    let [b, c] = if class == Class::Surface {
-                        [i, i + 1]
-                    } else {
-                        [i + 1, i]
-                    };
-                    self.triangles.push([corners[0], corners[b], corners[c]]);
-                    self.certain.push(margin);
+            Class::Buried => self.buried_area += area(corners),
+            Class::Nothing => self.nothing_area += area(corners),
+            Class::Surface | Class::Reversed => {}
+        }
+        for i in 1..corners.len().saturating_sub(1) {
+            let [b, c] = if class == Class::Reversed {
+                [i + 1, i]
+            } else {
+                [i, i + 1]
+            };
+            let triangle = [corners[0], corners[b], corners[c]];
+            match (class, trust) {
+                (Class::Surface | Class::Reversed, _) => {
+                    self.triangles.push(triangle);
+                    self.trust.push(trust);
                 }
+                (_, Trust::Within(margin)) if margin > 0.0 => self.culled.push(triangle),
+                (_, Trust::Within(_)) => {}
+                _ => self.ghosts.push(triangle),
             }
         }
     }
@@ -166,26 +227,27 @@ impl Faces<'_> {
                     );
                     !apart(&s, u, slack) || !apart(&r, t, slack)
                 }
-                _ => false,
+                [k, l] => folded(t, 3 - k - l, u, g, f, slack),
+                _ => true,
             }
         });
         found.sort_unstable();
         found
     }
 
-    /// Faces without contacts, by patches of one class each, with the margin of certainty.
+    /// Faces without contacts, by patches of one class each, with their trust.
     fn untouched(
         &self,
         contacts: &[Vec<u32>],
         job: &dyn Job,
-    ) -> Result<Vec<(Vec<u32>, Class, f64)>, Cancelled> {
+    ) -> Result<Vec<(Vec<u32>, Class, Trust)>, Cancelled> {
         check(job)?;
         let free =
             |f: u32| contacts[f as usize].is_empty() && self.normals[f as usize] != DVec3::ZERO;
         let all: Vec<u32> = (0..self.faces.len() as u32).filter(|&f| free(f)).collect();
         let alone = |f: u32| {
-            let (class, margin) = self.alone(f);
-            (vec![f], class, margin)
+            let (class, trust) = self.alone(f);
+            (vec![f], class, trust)
         };
         if !self.inside.is_closed() {
             // the winding number varies along an open shell
@@ -208,17 +270,17 @@ impl Faces<'_> {
             .map(|c| c.iter().map(|r| r.1).collect())
             .collect();
         let patch = |patch: Vec<u32>| match self.patch(&patch) {
-            Some(class) => vec![(patch, class, 0.0)],
+            Some(class) => vec![(patch, class, Trust::Within(0.0))],
             None => patch
                 .into_iter()
                 .map(alone)
-                .map(|(f, c, _)| (f, c, f64::INFINITY))
+                .map(|(f, c, _)| (f, c, Trust::Never))
                 .collect(),
         };
         Ok(patches.into_par_iter().flat_map_iter(patch).collect())
     }
 
-    /// The class of a patch of a closed shell, by its largest face and two more.
+    /// The class of a patch of a closed shell, by its largest face and some more.
     fn patch(&self, patch: &[u32]) -> Option<Class> {
         let size = |&&f: &&u32| area(&self.triangles[f as usize]);
         let largest = patch.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
@@ -229,12 +291,16 @@ impl Faces<'_> {
             )
         };
         let first = class(*largest);
-        let more = [patch[patch.len() / 3], patch[patch.len() * 2 / 3]];
-        more.into_iter().all(|f| class(f) == first).then_some(first)
+        let step = patch.len().div_ceil(PROBES);
+        patch
+            .iter()
+            .step_by(step)
+            .all(|&f| class(f) == first)
+            .then_some(first)
     }
 
-    /// The class of one face, doubtful ones being surface, and its margin of certainty.
-    fn alone(&self, f: u32) -> (Class, f64) {
+    /// The class of one face, surface if part of it seems to be, and its trust.
+    fn alone(&self, f: u32) -> (Class, Trust) {
         let (t, n) = (&self.triangles[f as usize], self.normals[f as usize]);
         let centre = middle(t);
         let class = self.class(centre, n);
@@ -244,15 +310,12 @@ impl Faces<'_> {
             .inside
             .sharp(centre + off, radius + 2.0 * self.scale.offset)
         {
-            return (class, 0.0);
+            return (class, Trust::Within(0.0));
         }
         let toward = |p: DVec3| self.class(centre + (p - centre) * 0.75, n);
         let is_surface = |c: Class| matches!(c, Class::Surface | Class::Reversed);
         let seen = [class, toward(t[0]), toward(t[1]), toward(t[2])];
-        (
-            seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class),
-            f64::INFINITY,
-        )
+        (seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class), Trust::Local)
     }
 
     /// Cuts the faces in contact and adds what is surface.
@@ -284,13 +347,18 @@ impl Faces<'_> {
                         .pieces(f as usize, contacts)
                 })
                 .collect();
-            for face in pieces {
+            for (&f, face) in chunk.iter().zip(pieces) {
                 out.buried_faces += usize::from(face.iter().any(|p| p.class == Class::Buried));
+                let t = &self.triangles[f as usize];
+                let empty = face.iter().filter(|p| p.class == Class::Nothing);
+                let empty: f64 = empty.map(|p| area(&p.corners)).sum();
+                if empty > 0.5 * area(t) && height(t) > SHEET * self.scale.slack {
+                    out.sheets.push(*t);
+                }
                 for p in face {
                     let doubtful = p.doubtful || full;
-                    out.doubtful |= doubtful;
-                    let margin = self.margin(&p.corners, doubtful);
-                    out.add(&p.corners, p.class, margin);
+                    let trust = self.trust(&p.corners, doubtful);
+                    out.add(&p.corners, p.class, trust);
                 }
             }
         }
@@ -298,16 +366,12 @@ impl Faces<'_> {
     }
 
     /// Near the line where faces meet, a piece's side does not tell.
-    fn margin(&self, corners: &[DVec3], doubtful: bool) -> f64 {
+    fn trust(&self, corners: &[DVec3], doubtful: bool) -> Trust {
         let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let radius = corners
-            .iter()
-            .fold(0.0, |r: f64, p| r.max(p.distance(centre)));
-        let sharp = self.inside.is_closed() || self.inside.sharp(centre, radius);
-        if doubtful || !sharp {
-            f64::INFINITY
-        } else {
-            2.0 * self.scale.slack
+        let radius = corners.iter().fold(0.0, |r: f64, p| r.max(p.distance(centre)));
+        if doubtful || !self.inside.sharp(centre, radius) {
+            return Trust::Never;
         }
+        Trust::Within(2.0 * self.scale.slack)
     }
 }

@@ -4,7 +4,7 @@ use crate::bvh::{Rim, Winding};
 use crate::num::Aabb;
 use glam::DVec3;
 
-/// What the tree's winding number may be off by where it is not refined.
+/// What the tree's winding number is off by at most where it is not refined, with room.
 const TREE_ERROR: f64 = 0.05;
 
 /// Where a mesh is solid. Closed shells count first: with w1 their winding number, rounded, and
@@ -80,11 +80,12 @@ impl Inside {
         if self.open.is_empty() {
             return true;
         }
-        let change = self.rim.variation(centre, radius) * radius;
-        if change >= 0.5 {
+        let most = 0.5 - TREE_ERROR;
+        let change = self.rim.variation(centre, radius, most / radius) * radius;
+        if change >= most {
             return false;
         }
-        let part = (self.open_number(centre) - 0.5).rem_euclid(1.0);
+        let part = (self.open.rough(centre) - 0.5).rem_euclid(1.0);
         change + TREE_ERROR < part.min(1.0 - part)
     }
 }

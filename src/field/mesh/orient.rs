@@ -1,18 +1,24 @@
 //! Which way each shell faces: solids outwards, cavities inwards.
 
 use super::shells::Shell;
+use super::soup::Sets;
 use crate::bvh::Winding;
 use crate::num::Aabb;
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Corners of a shell that are looked at to find what contains it.
 const PROBES: usize = 8;
 /// A winding number beyond this counts as inside a container, small holes and all.
 const WITHIN: f64 = 0.75;
 
+/// An open shell whose volume is less than this times its area to the power 3/2 is a sheet
+/// with no inside to turn outwards; a ball has 0.094.
+const FLAT: f64 = 5e-3;
+
 /// One shell, measured.
 struct Measured {
-    /// Signed volume, mm³; an open shell is closed by cones over its rims.
+    /// Signed volume, mm³; an open shell is closed by a lid on each rim, a flat one has none.
     volume: f64,
     bounds: Aabb,
     probes: Vec<DVec3>,
@@ -22,23 +28,20 @@ fn measure(points: &[DVec3], faces: &[[u32; 3]], shell: &Shell) -> Measured {
     let at = |v: u32| points[v as usize];
     let corners = || shell.faces.iter().flat_map(|&f| faces[f as usize]);
     let bounds = Aabb::of(corners().map(at));
-    // the mean of the rim is the tip of the cones
-    let (mut middle, mut length) = (DVec3::ZERO, 0.0);
-    for &([a, b], _) in &shell.rim {
-        let part = at(a).distance(at(b));
-        middle += (at(a) + at(b)) * (0.5 * part);
-        length += part;
-    }
-    let origin = if length > 0.0 {
-        middle / length
-    } else {
-        bounds.centre()
-    };
-    let part = |&f: &u32| {
-        let [a, b, c] = faces[f as usize].map(|v| at(v) - origin);
+    let origin = bounds.centre();
+    let cone = |t: [DVec3; 3]| {
+        let [a, b, c] = t.map(|p| p - origin);
         a.dot(b.cross(c)) / 6.0
     };
-    let volume = shell.faces.iter().map(part).sum();
+    let own = shell.faces.iter().map(|&f| cone(faces[f as usize].map(at)));
+    let volume = own.sum::<f64>() + lids(points, &shell.rim).into_iter().map(cone).sum::<f64>();
+    let size = |&f: &u32| {
+        let [a, b, c] = faces[f as usize].map(at);
+        (b - a).cross(c - a).length() * 0.5
+    };
+    let area: f64 = shell.faces.iter().map(size).sum();
+    let flat = !shell.rim.is_empty() && volume.abs() < FLAT * area.powf(1.5);
+    let volume = if flat { 0.0 } else { volume };
     let step = (shell.faces.len() * 3).div_ceil(PROBES).max(1);
     let probes = corners().step_by(step).map(at).collect();
     Measured {
@@ -46,6 +49,33 @@ fn measure(points: &[DVec3], faces: &[[u32; 3]], shell: &Shell) -> Measured {
         bounds,
         probes,
     }
+}
+
+/// Triangles that close the rims: each connected rim has a fan round its middle.
+fn lids(points: &[DVec3], rim: &[([u32; 2], u32)]) -> Vec<[DVec3; 3]> {
+    let at = |v: u32| points[v as usize];
+    let mut ends: Vec<u32> = rim.iter().flat_map(|r| r.0).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    let place = |v: u32| ends.partition_point(|&e| e < v) as u32;
+    let mut sets = Sets::new(ends.len());
+    rim.iter()
+        .for_each(|&([a, b], _)| sets.join(place(a), place(b)));
+    let mut middles: BTreeMap<u32, (DVec3, f64)> = BTreeMap::new();
+    for &([a, b], _) in rim {
+        let length = at(a).distance(at(b));
+        let (sum, total) = middles.entry(sets.find(place(a))).or_default();
+        *sum += (at(a) + at(b)) * (0.5 * length);
+        *total += length;
+    }
+    let mut out = vec![];
+    for &([a, b], n) in rim {
+        let (sum, total) = middles[&sets.find(place(a))];
+        // the lid runs along the rim against the faces
+        let lid = [at(b), at(a), sum / total.max(f64::MIN_POSITIVE)];
+        out.extend(std::iter::repeat_n(lid, n as usize));
+    }
+    out
 }
 
 fn holds(outer: &Aabb, inner: &Aabb) -> bool {

@@ -1,5 +1,6 @@
 //! The signed distance to the surface of what is solid.
 
+use super::buried::{Surface, Trust};
 use super::inside::Inside;
 use crate::bvh::{Bvh, Hit, Nearest};
 use crate::num::{Aabb, Interval};
@@ -7,13 +8,19 @@ use glam::DVec3;
 
 /// Points whose signs are found together.
 const RUN: usize = 64;
+/// And where they are not the same all over.
+const OCTET: usize = 8;
 
 /// The surface of a solid, and where it is inside.
 #[derive(Clone, Debug)]
 pub(super) struct Solid {
     surface: Bvh,
-    /// For each surface triangle, how far a foot must lie within it (mm) for its side to tell.
-    certain: Vec<f64>,
+    /// For each surface triangle, when its sides tell.
+    trust: Vec<Trust>,
+    /// What is not in `surface` although the sign may change there.
+    ghosts: Bvh,
+    /// Culled, but perhaps within `blur` of a kept one.
+    culled: Bvh,
     inside: Inside,
     /// Nearer than this a point is on the surface, mm.
     touch: f64,
@@ -34,16 +41,21 @@ fn signed(distance: f64, inside: bool) -> f64 {
 }
 
 impl Solid {
-    pub(super) fn new(
-        triangles: &[[DVec3; 3]],
-        certain: Vec<f64>,
-        inside: Inside,
-        blur: f64,
-    ) -> Self {
+    pub(super) fn new(surface: Surface, inside: Inside, blur: f64) -> Self {
         let touch = 1e-12 * inside.bounds().size().length();
+        let Surface {
+            triangles,
+            trust,
+            ghosts,
+            culled,
+            ..
+        } = surface;
+        let [surface, ghosts, culled] = [triangles, ghosts, culled].map(|t| Bvh::new(&t));
         Self {
-            surface: Bvh::new(triangles),
-            certain,
+            surface,
+            trust,
+            ghosts,
+            culled,
             inside,
             touch,
             blur,
@@ -55,17 +67,25 @@ impl Solid {
         *self.inside.bounds()
     }
 
+    /// Whether in that ball the sign changes nowhere but at the surface (and at the box).
+    fn sharp(&self, centre: DVec3, radius: f64) -> bool {
+        let reach = radius + self.blur;
+        self.ghosts.nearest_within(centre, reach).is_none() && self.inside.sharp(centre, radius)
+    }
+
     /// Whether the nearest face alone tells that `p` is inside.
     fn by_face(&self, near: &Nearest) -> Option<bool> {
         if near.distance <= self.touch {
             return Some(false);
         }
-        let margin = self
-            .certain
-            .get(near.face as usize)
-            .copied()
-            .unwrap_or(f64::INFINITY);
-        (near.inside > margin).then_some(near.height < 0.0)
+        let Trust::Within(margin) = self.trust(near) else { return None };
+        let hidden =
+            || margin > 0.0 && self.culled.nearest_within(near.point, self.blur).is_some();
+        (near.inside > margin && !hidden()).then_some(near.height < 0.0)
+    }
+
+    fn trust(&self, near: &Nearest) -> Trust {
+        self.trust.get(near.face as usize).copied().unwrap_or(Trust::Never)
     }
 
     pub(super) fn value(&self, p: DVec3) -> f64 {
@@ -91,26 +111,37 @@ impl Solid {
 
     pub(super) fn values(&self, at: &[DVec3], out: &mut [f64]) {
         let hits = self.surface.nearest_all(at);
-        let mut seeds = Vec::with_capacity(RUN + 1);
-        for ((at, hits), out) in at
-            .chunks(RUN)
-            .zip(hits.chunks(RUN))
-            .zip(out.chunks_mut(RUN))
-        {
-            let run = Aabb::of(at.iter().copied());
-            let radius = run.radius();
-            if self.inside.sharp(run.centre(), 2.0 * radius) {
-                // the last point of the run before, if it reaches this one
-                let last = seeds.pop();
-                seeds.clear();
-                seeds.extend(last);
-                self.spread(at, hits, radius, &mut seeds, out);
-            } else {
-                seeds.clear();
-                for ((&p, hit), f) in at.iter().zip(hits).zip(out) {
-                    let inside = hit.distance2.sqrt() > self.touch && self.inside.at(p);
-                    *f = signed(hit.distance2.sqrt(), inside);
-                }
+        // with closed shells the way from one run to the next holds no surprise either
+        let reach = self.inside.is_closed() && self.ghosts.is_empty();
+        let mut known = Vec::with_capacity(RUN + 1);
+        for ((at, hits), out) in at.chunks(RUN).zip(hits.chunks(RUN)).zip(out.chunks_mut(RUN)) {
+            let last = known.pop().filter(|_| reach);
+            known.clear();
+            known.extend(last);
+            self.signs(at, hits, &mut known, out);
+        }
+    }
+
+    /// Values of a run: together where the sign is sharp, else in smaller runs.
+    fn signs(&self, at: &[DVec3], hits: &[Hit], known: &mut Vec<Known>, out: &mut [f64]) {
+        let run = Aabb::of(at.iter().copied());
+        let radius = run.radius();
+        if self.sharp(run.centre(), 2.0 * radius) {
+            self.spread(at, hits, radius, known, out);
+        } else if at.len() > OCTET {
+            for ((at, hits), out) in at
+                .chunks(OCTET)
+                .zip(hits.chunks(OCTET))
+                .zip(out.chunks_mut(OCTET))
+            {
+                known.clear();
+                self.signs(at, hits, known, out);
+            }
+        } else {
+            known.clear();
+            for ((&p, hit), f) in at.iter().zip(hits).zip(out) {
+                let distance = hit.distance2.sqrt();
+                *f = signed(distance, distance > self.touch && self.inside.at(p));
             }
         }
     }
@@ -140,30 +171,32 @@ impl Solid {
             match near.and_then(|near| self.by_face(&near)) {
                 Some(inside) => {
                     *f = signed(distance, inside);
-                    known.push(Known {
-                        at: p,
-                        distance,
-                        inside,
-                    });
+                    known.push(Known { at: p, distance, inside });
                 }
-                None => open.push(i),
+                None => open.push((i, near.and_then(|near| self.side(&near)))),
             }
         }
-        for i in open {
+        let mut sides: Vec<((u32, bool), bool)> = vec![];
+        for (i, side) in open {
             let (p, distance) = (at[i], out[i]);
+            let same = || sides.iter().find(|s| Some(s.0) == side).map(|s| s.1);
             let reaches =
                 |k: &&Known| k.at.distance(p) < k.distance.max(distance) - self.blur - self.touch;
-            let inside = match known.iter().rev().find(reaches) {
-                Some(k) => k.inside,
-                None => distance > self.touch && self.inside.raw(p),
-            };
+            let reached = || known.iter().rev().find(reaches).map(|k| k.inside);
+            let inside = same()
+                .or_else(reached)
+                .unwrap_or_else(|| distance > self.touch && self.inside.raw(p));
             out[i] = signed(distance, inside);
-            known.push(Known {
-                at: p,
-                distance,
-                inside,
-            });
+            known.push(Known { at: p, distance, inside });
+            sides.extend(side.map(|side| (side, inside)));
         }
+    }
+
+    /// The face and the side of it on which a point lies, if all points there that are near each
+    /// other have the same sign.
+    fn side(&self, near: &Nearest) -> Option<(u32, bool)> {
+        let local = self.trust(near) == Trust::Local && near.distance > self.touch;
+        (local && near.inside > 0.0).then_some((near.face, near.height < 0.0))
     }
 
     pub(super) fn bound(&self, b: &Aabb) -> Interval {
@@ -179,7 +212,7 @@ impl Solid {
         let range = if self.inside.is_closed() {
             let inside = self.inside.bounds().contains(centre) && self.raw(centre, &near);
             Interval::ball(signed(d, inside), radius + self.blur)
-        } else if d > radius + self.blur && self.inside.sharp(centre, radius) {
+        } else if d > radius + self.blur && self.sharp(centre, radius) {
             let inside = self.inside.at(centre);
             let cut = inside && !self.holds(b);
             if cut {

@@ -110,7 +110,7 @@ impl Soup {
                     });
                 };
                 // squares and products of three lengths must stay finite
-                if !(p.abs().max_element() < 1e60) {
+                if !p.abs().cmplt(DVec3::splat(1e60)).all() {
                     return Err(MeshFieldError::Coordinate {
                         face: index,
                         corner: v,
