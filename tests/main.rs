@@ -1,5 +1,7 @@
 //! The one test binary: what needs the whole crate, or the built command.
 
+/// The seven chairs of `data/chairs`.
+mod chairs;
 /// The command: messages, exit codes, files.
 mod cli;
 /// A module imports from lower floors only.

@@ -1,15 +1,14 @@
 //! `convert`: any mesh, or a solid, into a clean watertight mesh.
 
 use super::failure::Failure;
-use super::inputs::{Fineness, Reading};
+use super::inputs::{self, Fineness, Reading};
 use super::watch::Watch;
 use super::{Making, npy, steps};
 use clap::Args;
 use fieldgraft::check::{Options, inspect};
-use fieldgraft::iso::Mesher;
 use fieldgraft::job::{self, Job};
 use fieldgraft::mesh::{check_output, write};
-use fieldgraft::recipe::{GridEntry, RecipeError};
+use fieldgraft::recipe::{GridEntry, MesherEntry, RecipeError};
 use fieldgraft::run::{self, FrameReport, Names, Report, Work, predict_one};
 use fieldgraft::scene::{SceneError, Single, sha256};
 use std::path::{Path, PathBuf};
@@ -34,6 +33,9 @@ pub struct Convert {
     /// Drop loose pieces below this share of the volume
     #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
     crumbs: f64,
+    /// How triangles are made: print, sharp (keeps edges and corners) or preview
+    #[arg(long, value_name = "MESHER", value_parser = inputs::mesher)]
+    mesher: Option<MesherEntry>,
     #[command(flatten)]
     making: Making,
 }
@@ -94,7 +96,7 @@ impl Convert {
             variant: "",
             t: 0.0,
             lattice,
-            mesher: Mesher::Cone,
+            mesher: self.mesher.unwrap_or_default(),
             crumbs: self.crumbs,
             verify: self.making.verify || self.making.strict,
         };
@@ -107,6 +109,7 @@ impl Convert {
         let report = Report {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             recipe_sha256: sha256(b""),
+            arguments: steps::arguments(),
             inputs: input.into_iter().collect(),
             threads: rayon::current_num_threads(),
             seconds_shapes: seconds,

@@ -2,7 +2,9 @@
 
 use super::failure::Failure;
 use clap::Args;
-use fieldgraft::recipe::{LengthUnit, PlainOr, ShapeEntry, SignEntry, ThickenEntry, UpAxis, word};
+use fieldgraft::recipe::{
+    LengthUnit, MesherEntry, PlainOr, ShapeEntry, SignEntry, ThickenEntry, UpAxis, word,
+};
 use std::path::Path;
 
 /// How to read the input meshes.
@@ -100,6 +102,11 @@ fn lengths(mm: &f64) -> Result<Option<f64>, String> {
     } else {
         Err(format!("got {mm}; expected millimetres, more than 0"))
     }
+}
+
+/// A mesher by name.
+pub fn mesher(text: &str) -> Result<MesherEntry, String> {
+    word(text)
 }
 
 /// How finely to sample.

@@ -1,15 +1,15 @@
 //! `morph`: the quick road from meshes to hybrids. It makes a recipe and runs it.
 
 use super::failure::Failure;
-use super::inputs::{Fineness, Reading};
+use super::inputs::{self, Fineness, Reading};
 use super::steps::{self, Task};
 use super::watch::Watch;
 use super::{Making, convert};
 use clap::{Args, ValueEnum};
 use fieldgraft::mesh::check_output;
 use fieldgraft::recipe::{
-    GridEntry, MethodEntry, MorphEntry, OutputEntry, PlaceLike, PlainOr, Recipe, ShapeEntry,
-    Source, Times, VERSION, word,
+    GridEntry, MesherEntry, MethodEntry, MorphEntry, OutputEntry, PlaceLike, PlainOr, Recipe,
+    ShapeEntry, Source, Times, VERSION, word,
 };
 use fieldgraft::run;
 use std::collections::BTreeMap;
@@ -46,6 +46,9 @@ pub struct Morph {
     /// Drop loose pieces below this share of the volume
     #[arg(long, value_name = "SHARE")]
     crumbs: Option<f64>,
+    /// How triangles are made: print, sharp (keeps edges and corners) or preview
+    #[arg(long, value_name = "MESHER", value_parser = inputs::mesher)]
+    mesher: Option<MesherEntry>,
     /// Also write the recipe that this command stands for
     #[arg(long, value_name = "TOML")]
     recipe: Option<PathBuf>,
@@ -86,7 +89,7 @@ impl Morph {
             check_output(Path::new(&self.output.replace("{t}", "0")), true)?;
         }
         let task = Task {
-            source: Source::unwritten_with(text),
+            source: Source::unplaced(text, Path::new("")),
             beside: Path::new(""),
             names: convert::names(&self.output, self.picture.clone()),
             file: None,
@@ -145,6 +148,7 @@ impl Morph {
             morph,
             output: OutputEntry {
                 crumbs: self.crumbs,
+                mesher: self.mesher.unwrap_or_default(),
                 ..OutputEntry::default()
             },
             ..Recipe::default()

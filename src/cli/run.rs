@@ -162,7 +162,13 @@ fn parse(text: &str, file: &Path, set: &[String]) -> Result<(Recipe, Source), Re
             .map_err(|why| RecipeFailure::Usage(format!("--set: {why}")))?;
     }
     // the lines of this text are nobody's; its keys are what an error must name
-    Ok(Recipe::parse(&tree.to_string(), Path::new("--set"))?)
+    let text = tree.to_string();
+    let toml = file.with_extension("toml");
+    let (recipe, _) = Recipe::parse(&text, &toml).map_err(|mut e| {
+        (e.file, e.line) = (file.to_owned(), None);
+        e
+    })?;
+    Ok((recipe, Source::unplaced(text, file)))
 }
 
 /// Sets `key.path[0].name=value` in a tree; the value is TOML, or else a plain word.

@@ -1,17 +1,18 @@
 //! The steps that `morph` and `run` share: draft, limits, scene, frames, report.
 
 use super::Making;
+use super::convert::plain;
 use super::failure::Failure;
 use super::watch::Watch;
-use fieldgraft::iso::Mesher;
 use fieldgraft::job::Job;
 use fieldgraft::mesh::check_output;
 use fieldgraft::picture::Style;
-use fieldgraft::recipe::{GridEntry, MesherEntry, Recipe, Source};
+use fieldgraft::recipe::{GridEntry, Recipe, Source};
 use fieldgraft::run::{
-    self, FrameReport, Names, Prediction, Report, Settings, available_memory, predict, probe,
+    self, FrameReport, Names, Prediction, Report, Settings, available_memory, coarsening, predict,
+    probe,
 };
-use fieldgraft::scene::{Draft, Scene, sha256};
+use fieldgraft::scene::{Draft, sha256};
 use std::path::Path;
 use std::time::Instant;
 
@@ -43,20 +44,28 @@ pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failur
     if !making.dry_run {
         check_outputs(&names, &frames, making.force)?;
     }
-    let mesher = mesher(recipe.output.mesher);
+    let mesher = recipe.output.mesher;
     let recipe_hash = sha256(source.text().as_bytes());
     let coarse = making.dry_run.then(|| (coarser(&recipe), source.clone()));
-    let draft = Draft::open(recipe, source, beside, watch)?;
+    let draft = Draft::open(recipe, source, beside, watch).map_err(plain)?;
     let first = predict(&draft);
     let limit = limit(making);
     if let Some((recipe, source)) = coarse {
-        let step = draft.step();
         refuse(&first, limit)?;
+        let by = coarsening(&draft);
+        let recipe = recipe(draft.step() * by);
         drop(draft);
-        return dry_run(recipe(step), source, beside, &first, limit, making, watch);
+        let scene = Draft::open(recipe, source, beside, watch)
+            .and_then(|d| d.build(watch))
+            .map_err(plain)?;
+        scene.notes.iter().for_each(|n| watch.say(n));
+        watch.stage("predict");
+        let p = probe(&scene, &first, by, watch)?;
+        tell_prediction(&p, making, watch)?;
+        return refuse(&p, limit);
     }
     refuse(&first, limit)?;
-    let scene = draft.build(watch)?;
+    let scene = draft.build(watch).map_err(plain)?;
     scene.notes.iter().for_each(|n| watch.say(n));
     let settings = Settings {
         names,
@@ -72,6 +81,7 @@ pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failur
         version: env!("CARGO_PKG_VERSION").to_owned(),
         recipe: file,
         recipe_sha256: recipe_hash,
+        arguments: arguments(),
         inputs: scene.inputs.clone(),
         threads: rayon::current_num_threads(),
         seconds_shapes: seconds,
@@ -99,6 +109,14 @@ fn check_outputs(names: &Names, frames: &[(String, f64)], force: bool) -> Result
         }
     }
     Ok(())
+}
+
+/// What the command line said.
+pub fn arguments() -> Vec<String> {
+    std::env::args_os()
+        .skip(1)
+        .map(|a| a.to_string_lossy().into_owned())
+        .collect()
 }
 
 /// Prints the report and judges it.
@@ -180,13 +198,6 @@ pub fn tell(f: &FrameReport, watch: &Watch) {
     ));
 }
 
-fn mesher(entry: MesherEntry) -> Mesher {
-    match entry {
-        MesherEntry::Print => Mesher::Cone,
-        MesherEntry::Preview => Mesher::SurfaceNets,
-    }
-}
-
 /// Every frame: hybrid and time, as far as the recipe alone tells.
 fn frames(recipe: &Recipe) -> Vec<(String, f64)> {
     let times =
@@ -225,35 +236,17 @@ pub fn refuse(p: &Prediction, limit: Option<u64>) -> Result<(), Failure> {
     }
 }
 
-/// The same recipe with cells [`run::COARSER`] times larger than a given step.
+/// The same recipe with cells of another size, mm.
 fn coarser(recipe: &Recipe) -> impl FnOnce(f64) -> Recipe + use<> {
     let mut recipe = recipe.clone();
     move |step| {
         recipe.grid = GridEntry {
             resolution: None,
-            voxel: Some(step * run::COARSER),
+            voxel: Some(step),
             ..recipe.grid
         };
         recipe
     }
-}
-
-fn dry_run(
-    recipe: Recipe,
-    source: Source,
-    beside: &Path,
-    first: &Prediction,
-    limit: Option<u64>,
-    making: &Making,
-    watch: &Watch,
-) -> Result<(), Failure> {
-    let mesher = mesher(recipe.output.mesher);
-    let scene: Scene = Draft::open(recipe, source, beside, watch)?.build(watch)?;
-    scene.notes.iter().for_each(|n| watch.say(n));
-    watch.stage("predict");
-    let p = probe(&scene, first, mesher, watch)?;
-    tell_prediction(&p, making, watch)?;
-    refuse(&p, limit)
 }
 
 /// Prints a prediction.

@@ -87,6 +87,8 @@ pub enum MesherEntry {
     /// Closed, manifold and free of self-intersections.
     #[default]
     Print,
+    /// The same with sharp edges and corners; asks the field two to three times as much.
+    Sharp,
     /// Quicker and with half the triangles; not always manifold.
     Preview,
 }

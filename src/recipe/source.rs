@@ -93,18 +93,15 @@ impl Source {
 
     /// A recipe that was never written down, such as a command line: no file, no lines.
     pub fn unwritten() -> Self {
-        Self {
-            file: PathBuf::new(),
-            text: String::new(),
-            places: Vec::new(),
-        }
+        Self::unplaced(String::new(), Path::new(""))
     }
 
-    /// A text that a program wrote for its user: its keys and lines are nobody's.
-    pub fn unwritten_with(text: String) -> Self {
+    /// A text of which neither keys nor lines are to be looked up, because a program wrote it.
+    pub fn unplaced(text: String, file: &Path) -> Self {
         Self {
+            file: file.to_owned(),
             text,
-            ..Self::unwritten()
+            places: Vec::new(),
         }
     }
 

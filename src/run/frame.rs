@@ -5,9 +5,10 @@ use crate::check::{self, Options, drop_crumbs, inspect, solid_pieces};
 use crate::field::Shared;
 use crate::field::sample::{sample, undecided};
 use crate::grid::Lattice;
-use crate::iso::{Mesher, extract};
+use crate::iso::{Mesher, extract, extract_sharp};
 use crate::job::{Cancelled, Job};
 use crate::mesh::TriMesh;
+use crate::recipe::MesherEntry;
 use std::time::Instant;
 
 /// What to make.
@@ -20,7 +21,7 @@ pub struct Work<'a> {
     /// Where to sample.
     pub lattice: Lattice,
     /// Which mesher.
-    pub mesher: Mesher,
+    pub mesher: MesherEntry,
     /// Loose pieces below this share of the volume are dropped.
     pub crumbs: f64,
     /// Whether to count self-intersections and to search undecided cells.
@@ -58,8 +59,9 @@ fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
     made
 }
 
-/// Subdivisions of an undecided cell when asked to verify: to an eighth of its side.
-const DECIDE_LEVELS: u32 = 3;
+/// Subdivisions of an undecided cell when asked to verify: to half its side. Each further one
+/// costs eight times as much.
+const DECIDE_LEVELS: u32 = 1;
 
 /// Makes the mesh of a field.
 ///
@@ -83,8 +85,10 @@ pub fn make(
     r.bricks = sampling.stats.bricks;
     r.evaluated = sampling.stats.evaluated;
     r.border_clipped = sampling.stats.border_clipped;
-    let mesh = timed(&mut r.seconds.mesh, || {
-        extract(&sampling.bricks, work.mesher, job)
+    let mesh = timed(&mut r.seconds.mesh, || match work.mesher {
+        MesherEntry::Print => extract(&sampling.bricks, Mesher::Cone, job),
+        MesherEntry::Sharp => extract_sharp(&sampling.bricks, &*field, job),
+        MesherEntry::Preview => extract(&sampling.bricks, Mesher::SurfaceNets, job),
     })?;
     if work.verify {
         let search = || undecided(&*field, &sampling, DECIDE_LEVELS, job);

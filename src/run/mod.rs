@@ -9,15 +9,16 @@ mod system;
 
 pub use files::{Names, place_text, time_word};
 pub use frame::{FrameResult, Work, make};
-pub use predict::{COARSER, Prediction, predict, predict_one, probe};
+pub use predict::{Prediction, coarsening, predict, predict_one, probe};
 pub use report::{FrameReport, Report, Seconds};
 pub use system::{available_memory, peak_memory};
 
-use crate::iso::Mesher;
 use crate::job::{Cancelled, Job};
 use crate::mesh::{self, MeshError};
 use crate::morph::MorphError;
+use crate::num::Aabb;
 use crate::picture::{PictureError, Style, render, save_png};
+use crate::recipe::MesherEntry;
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -66,12 +67,12 @@ pub struct Settings {
     /// Where results go.
     pub names: Names,
     /// Which mesher.
-    pub mesher: Mesher,
+    pub mesher: MesherEntry,
     /// Whether files may be overwritten.
     pub force: bool,
     /// Whether to count self-intersections.
     pub verify: bool,
-    /// How pictures look.
+    /// How pictures look; all at one scale, that of the shapes unless it has a frame.
     pub style: Style,
     /// SHA-256 of the recipe's text.
     pub recipe_hash: String,
@@ -91,6 +92,13 @@ pub fn run(
     told: &mut dyn FnMut(&FrameReport),
 ) -> Result<Report, RunError> {
     let start = Instant::now();
+    let mut settings = settings.clone();
+    let shapes = scene
+        .shapes
+        .iter()
+        .fold(Aabb::EMPTY, |b, s| b.hull(s.bounds));
+    settings.style.frame = settings.style.frame.or(Some(shapes));
+    let settings = &settings;
     for variant in &scene.variants {
         for &t in &variant.times {
             let work = Work {

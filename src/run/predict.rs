@@ -45,7 +45,7 @@ const BRICK_ROOM: f64 = 2.5;
 /// Samples of a brick, and what is held beside them while it is meshed.
 const BRICK_BYTES: f64 = 512.0 * 4.0 + 256.0;
 /// A triangle and its half point, while the mesh is made, checked, written and read back.
-const TRIANGLE_BYTES: f64 = 160.0;
+const TRIANGLE_BYTES: f64 = 300.0;
 /// The program, its threads and the input meshes.
 const BASE_BYTES: f64 = 40e6;
 /// The sampled form of a shape: leaves of 9³ samples, some of them coarse.
@@ -111,28 +111,31 @@ fn total(frames: u64, lattice: &Lattice, size: Size, shapes: f64) -> Prediction 
     }
 }
 
-/// Cells of the coarse scene are this many times larger.
-pub const COARSER: f64 = 4.0;
+/// How many times larger cells a scene may have that predicts one of these cells: at most 4, and
+/// no fewer than 64 along the longest side.
+pub fn coarsening(draft: &Draft) -> f64 {
+    (draft.longest() / draft.step() / 64.0).clamp(1.0, 4.0)
+}
 
-/// From a scene built with cells [`COARSER`] times larger: the largest frame, scaled up with the
-/// surface. `fine` is the step of the run itself, `shapes` the bytes of the fine shapes.
+/// From a scene built with cells `coarser` times larger: the largest frame, scaled up with the
+/// surface.
 ///
 /// # Errors
 /// Cancelled.
 pub fn probe(
     coarse: &Scene,
     first: &Prediction,
-    mesher: Mesher,
+    coarser: f64,
     job: &dyn Job,
 ) -> Result<Prediction, Cancelled> {
-    let grow = COARSER * COARSER;
+    let grow = coarser * coarser;
     let mut most = Size::default();
     for v in &coarse.variants {
         for &t in &v.times {
             let Ok(morph) = v.morph(t) else { continue };
             let field = morph.at(t, job)?;
             let samples = sample(&*field, coarse.lattice, job)?;
-            let mesh = extract(&samples.bricks, mesher, job)?;
+            let mesh = extract(&samples.bricks, Mesher::Cone, job)?;
             let bricks = samples.stats.active_bricks as f64;
             most.active_bricks = most.active_bricks.max(bricks * grow);
             most.triangles = most.triangles.max(mesh.faces.len() as f64 * grow);

@@ -77,6 +77,8 @@ pub struct Report {
     pub recipe: Option<String>,
     /// SHA-256 of the recipe's text.
     pub recipe_sha256: String,
+    /// What the command line said.
+    pub arguments: Vec<String>,
     /// The files read.
     pub inputs: Vec<Input>,
     /// Nothing here is random; the seed of what may become so.

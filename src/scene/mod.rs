@@ -14,6 +14,9 @@ mod plan;
 mod single;
 mod variant;
 
+#[cfg(test)]
+mod tests;
+
 pub use draft::Draft;
 pub use live::LiveShape;
 pub use single::Single;

@@ -107,7 +107,7 @@ fn times(entry: &MorphEntry, plan: &Plan, at: &str) -> Result<Vec<f64>, Problem>
             .any(|f| moves(&f.morph) || moves(&f.deform))
     };
     match &entry.t {
-        None => Ok(vec![if moving { 0.5 } else { 0.0 }]),
+        None => Ok(vec![0.5]),
         Some(t) if !moving && t.0.len() > 1 => {
             let why = "nothing depends on t, the weights are fixed; remove it or the weights";
             Err(Problem::new(format!("{at}.t"), why))

@@ -63,7 +63,10 @@ fn a_wrong_key_with_what_was_meant() {
         );
     folder()
         .run(&["run", "r.toml", "--set", "grid.resolutoin=3"])
-        .fails(3, &["grid.resolutoin", "did you mean `resolution`?"]);
+        .fails(
+            3,
+            &["r.toml: grid.resolutoin", "did you mean `resolution`?"],
+        );
 }
 
 #[test]
