@@ -194,7 +194,11 @@ fn options(entry: &ShapeEntry) -> MeshOptions {
 }
 
 /// The sampled form of a field at a fine step, mm.
-pub(super) fn sampled(exact: &dyn Field, step: f64, job: &dyn Job) -> Result<(Shared, f64), Cancelled> {
+pub(super) fn sampled(
+    exact: &dyn Field,
+    step: f64,
+    job: &dyn Job,
+) -> Result<(Shared, f64), Cancelled> {
     let sampled = Sampled::new(exact, step, job)?;
     let volume = sampled.volume();
     Ok((Arc::new(sampled), volume))
