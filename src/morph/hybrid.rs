@@ -4,7 +4,7 @@
 use super::convex::combine;
 use super::inner::{Local, LocalRange, Mix};
 use super::plan::Blend;
-use crate::element::{Between, Element};
+use crate::element::{Between, Element, Gauge};
 use crate::field::{Field, Shared};
 use crate::num::{Aabb, Interval};
 use crate::weight::Weighting;
@@ -14,6 +14,8 @@ use glam::DVec3;
 pub(super) struct Placed {
     /// The element of the result, E' (paper 001, Algorithm 1).
     pub element: Element,
+    /// Its distance.
+    pub gauge: Gauge,
     /// From it onto the element of each shape: M_j M'^-1.
     pub maps: Vec<Between>,
     /// Weights of the shapes in this feature; sum to one.
@@ -65,7 +67,7 @@ impl Hybrid {
         for (r, &p) in at.iter().enumerate() {
             let row = r * n..(r + 1) * n;
             for (d, f) in out.d[row.clone()].iter_mut().zip(&self.features) {
-                *d = f.element.distance(p);
+                *d = f.gauge.distance(p);
             }
             self.weighting
                 .weigh(&out.d[row.clone()], &mut out.w[row.clone()]);
@@ -204,11 +206,7 @@ impl Hybrid {
             let lam: Vec<_> = self.lam.iter().map(|&l| Interval::point(l)).collect();
             return self.mix.bound(&g, &lam, &self.local.into(), &mut order);
         }
-        let d: Vec<_> = self
-            .features
-            .iter()
-            .map(|f| f.element.distance_bound(b))
-            .collect();
+        let d: Vec<_> = self.features.iter().map(|f| f.gauge.bound(b)).collect();
         let (mut w, mut sharp) = (vec![Interval::ALL; n], vec![Interval::ALL; n]);
         self.weighting.enclose(&d, &mut w);
         self.sharp.enclose(&d, &mut sharp);
@@ -276,11 +274,7 @@ impl Hybrid {
 
     fn bound_by_fields(&self, b: &Aabb) -> Interval {
         let mut order = Vec::new();
-        let d: Vec<_> = self
-            .features
-            .iter()
-            .map(|f| f.element.distance_bound(b))
-            .collect();
+        let d: Vec<_> = self.features.iter().map(|f| f.gauge.bound(b)).collect();
         let mut w = vec![Interval::ALL; d.len()];
         self.weighting.enclose(&d, &mut w);
         let values: Vec<_> = self

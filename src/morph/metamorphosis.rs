@@ -70,6 +70,7 @@ impl Metamorphosis {
                 let element = average(&rows);
                 let maps = f.elements.iter().map(|e| element.between(e)).collect();
                 Placed {
+                    gauge: element.gauge(0.0),
                     element,
                     maps,
                     lam: f.morph.at(t),

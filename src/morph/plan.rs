@@ -144,6 +144,27 @@ pub struct Plan {
     pub space_time: SpaceTime,
 }
 
+impl Plan {
+    /// A morph of whole shapes, without features: a pair by time, more shapes in equal shares.
+    pub fn whole(shapes: Vec<Part>, inner: Inner) -> Self {
+        let course = match shapes.len() {
+            2 => Course::Pair(Ease::Power(1.0)),
+            k => Course::Fixed(vec![1.0; k]),
+        };
+        Self {
+            shapes,
+            features: Vec::new(),
+            course,
+            blend: Blend::Maps,
+            inner,
+            weighting: Weighting::Transfinite,
+            sharp: Weighting::Transfinite,
+            frames: Frames::Average,
+            space_time: SpaceTime::default(),
+        }
+    }
+}
+
 /// What keeps a plan from being carried out.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MorphError {
