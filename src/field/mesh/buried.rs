@@ -315,7 +315,10 @@ impl Faces<'_> {
         let toward = |p: DVec3| self.class(centre + (p - centre) * 0.75, n);
         let is_surface = |c: Class| matches!(c, Class::Surface | Class::Reversed);
         let seen = [class, toward(t[0]), toward(t[1]), toward(t[2])];
-        (seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class), Trust::Local)
+        (
+            seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class),
+            Trust::Local,
+        )
     }
 
     /// Cuts the faces in contact and adds what is surface.
@@ -368,7 +371,9 @@ impl Faces<'_> {
     /// Near the line where faces meet, a piece's side does not tell.
     fn trust(&self, corners: &[DVec3], doubtful: bool) -> Trust {
         let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let radius = corners.iter().fold(0.0, |r: f64, p| r.max(p.distance(centre)));
+        let radius = corners
+            .iter()
+            .fold(0.0, |r: f64, p| r.max(p.distance(centre)));
         if doubtful || !self.inside.sharp(centre, radius) {
             return Trust::Never;
         }

@@ -78,14 +78,18 @@ impl Solid {
         if near.distance <= self.touch {
             return Some(false);
         }
-        let Trust::Within(margin) = self.trust(near) else { return None };
-        let hidden =
-            || margin > 0.0 && self.culled.nearest_within(near.point, self.blur).is_some();
+        let Trust::Within(margin) = self.trust(near) else {
+            return None;
+        };
+        let hidden = || margin > 0.0 && self.culled.nearest_within(near.point, self.blur).is_some();
         (near.inside > margin && !hidden()).then_some(near.height < 0.0)
     }
 
     fn trust(&self, near: &Nearest) -> Trust {
-        self.trust.get(near.face as usize).copied().unwrap_or(Trust::Never)
+        self.trust
+            .get(near.face as usize)
+            .copied()
+            .unwrap_or(Trust::Never)
     }
 
     pub(super) fn value(&self, p: DVec3) -> f64 {
@@ -114,7 +118,11 @@ impl Solid {
         // with closed shells the way from one run to the next holds no surprise either
         let reach = self.inside.is_closed() && self.ghosts.is_empty();
         let mut known = Vec::with_capacity(RUN + 1);
-        for ((at, hits), out) in at.chunks(RUN).zip(hits.chunks(RUN)).zip(out.chunks_mut(RUN)) {
+        for ((at, hits), out) in at
+            .chunks(RUN)
+            .zip(hits.chunks(RUN))
+            .zip(out.chunks_mut(RUN))
+        {
             let last = known.pop().filter(|_| reach);
             known.clear();
             known.extend(last);
@@ -171,7 +179,11 @@ impl Solid {
             match near.and_then(|near| self.by_face(&near)) {
                 Some(inside) => {
                     *f = signed(distance, inside);
-                    known.push(Known { at: p, distance, inside });
+                    known.push(Known {
+                        at: p,
+                        distance,
+                        inside,
+                    });
                 }
                 None => open.push((i, near.and_then(|near| self.side(&near)))),
             }
@@ -187,7 +199,11 @@ impl Solid {
                 .or_else(reached)
                 .unwrap_or_else(|| distance > self.touch && self.inside.raw(p));
             out[i] = signed(distance, inside);
-            known.push(Known { at: p, distance, inside });
+            known.push(Known {
+                at: p,
+                distance,
+                inside,
+            });
             sides.extend(side.map(|side| (side, inside)));
         }
     }
