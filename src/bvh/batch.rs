@@ -31,6 +31,8 @@ struct Scratch {
     octet: Vec<u32>,
     /// Squared distances of the run's candidates to the centres of its eight octets.
     centres: Vec<[f64; LANES]>,
+    /// The last point searched for and its distance.
+    last: Option<(DVec3, f64)>,
 }
 
 impl Bvh {
@@ -101,17 +103,32 @@ impl Bvh {
             return;
         }
         for (&p, out) in at.iter().zip(out) {
-            let (distance2, slot) = self.closest(p, f64::INFINITY, &mut s.stack);
+            let (distance2, slot) = self.closest_after(p, s);
             *out = Hit { distance2, slot };
         }
+    }
+
+    /// [`Bvh::closest`] with the reach that the point searched for before leaves.
+    fn closest_after(&self, p: DVec3, s: &mut Scratch) -> (f64, u32) {
+        let reach = s.last.map_or(f64::INFINITY, |(q, d)| {
+            d + p.distance(q) + 4.0 * self.slack(p)
+        });
+        // a point that is no number has no reach
+        let reach = reach.min(f64::INFINITY);
+        let found = self.closest(p, reach * reach, &mut s.stack);
+        s.last = (found.1 != u32::MAX).then(|| (p, found.0.sqrt()));
+        found
     }
 
     /// Fills `s.run` with every triangle that can be nearest to one of the points; `false` if
     /// they are more than `cap`.
     fn gather_for(&self, at: &[DVec3], cap: usize, s: &mut Scratch) -> bool {
+        if !at.iter().all(|p| p.is_finite()) {
+            return false;
+        }
         let b = Aabb::of(at.iter().copied());
         let middle = b.centre();
-        let distance = self.closest(middle, f64::INFINITY, &mut s.stack).0.sqrt();
+        let distance = self.closest_after(middle, s).0.sqrt();
         let reach = distance + b.radius() + 4.0 * self.slack(middle);
         self.gather(&b, reach, cap, &mut s.stack, &mut s.run)
     }

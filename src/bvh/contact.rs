@@ -36,7 +36,7 @@ fn normal(p: &[DVec3]) -> DVec3 {
 fn gap(a: &[DVec3], b: &[DVec3], axis: DVec3) -> f64 {
     // sides nearly parallel give a direction of round-off only
     let length = axis.length();
-    if !(length > 1e-9) {
+    if length <= 1e-9 || length.is_nan() {
         return f64::NEG_INFINITY;
     }
     let shadow = |p: &[DVec3]| {

@@ -151,11 +151,44 @@ impl Dipole {
     }
 }
 
-/// Signed solid angle of a triangle seen from the origin (van Oosterom and Strackee 1983).
-fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
+/// The half of a triangle's signed solid angle seen from the origin, as the direction of a complex
+/// number (van Oosterom and Strackee 1983): real part, imaginary part.
+fn half_angle([a, b, c]: [DVec3; 3]) -> (f64, f64) {
     let (la, lb, lc) = (a.length(), b.length(), c.length());
-    let volume = a.dot(b.cross(c));
-    2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
+    let across = a.dot(b.cross(c));
+    (
+        la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb,
+        across,
+    )
+}
+
+/// Angles in (-pi, pi] summed as a product of complex numbers: one arc tangent for all, and the
+/// full turns counted by the side of the real axis on which each factor lies.
+struct Angles {
+    re: f64,
+    im: f64,
+    turns: f64,
+}
+
+impl Angles {
+    fn add(&mut self, (re, im): (f64, f64)) {
+        let (x, y) = (self.re * re - self.im * im, self.re * im + self.im * re);
+        let size = x.abs().max(y.abs());
+        // a point on a corner sees nothing of that triangle
+        if size <= 0.0 || size.is_nan() {
+            return;
+        }
+        if self.im >= 0.0 && im >= 0.0 && y < 0.0 {
+            self.turns += 1.0;
+        } else if self.im < 0.0 && im < 0.0 && (y > 0.0 || (y == 0.0 && x < 0.0)) {
+            self.turns -= 1.0;
+        }
+        (self.re, self.im) = (x / size, y / size);
+    }
+
+    fn total(&self) -> f64 {
+        self.im.atan2(self.re) + 2.0 * PI * self.turns
+    }
 }
 
 impl Winding {
@@ -206,10 +239,15 @@ impl Winding {
 
     fn sum(&self, first: u32, count: u32, q: DVec3) -> f64 {
         let slots = first as usize..(first + count) as usize;
-        self.bvh.corners[slots]
-            .iter()
-            .map(|t| solid_angle(t.map(|p| p - q)))
-            .sum()
+        let mut angles = Angles {
+            re: 1.0,
+            im: 0.0,
+            turns: 0.0,
+        };
+        for t in &self.bvh.corners[slots] {
+            angles.add(half_angle(t.map(|p| p - q)));
+        }
+        2.0 * angles.total()
     }
 
     fn tree(&self, q: DVec3, beta: f64, stack: &mut Vec<u32>) -> f64 {
@@ -281,4 +319,35 @@ fn of_children(a: &Moments, b: &Moments, bounds: &Aabb) -> Moments {
     m.add(a);
     m.add(b);
     m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Angles, half_angle};
+    use glam::dvec3;
+
+    #[test]
+    fn angles_add_up_over_full_turns() {
+        for step in [0.3f64, -0.3, 2.9, -2.9, 1.7] {
+            let mut sum = Angles {
+                re: 1.0,
+                im: 0.0,
+                turns: 0.0,
+            };
+            for n in 1..200 {
+                sum.add((step.cos() * 1e3, step.sin() * 1e3));
+                assert!((sum.total() - step * f64::from(n)).abs() < 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn an_octant_is_an_eighth_of_the_sphere() {
+        let (re, im) = half_angle([
+            dvec3(2.0, 0.0, 0.0),
+            dvec3(0.0, 3.0, 0.0),
+            dvec3(0.0, 0.0, 1.0),
+        ]);
+        assert!((im.atan2(re) - std::f64::consts::FRAC_PI_4).abs() < 1e-15);
+    }
 }

@@ -125,7 +125,7 @@ impl<'a> Work<'a> {
             .map(|&([a, b], n)| self.at(a).distance(self.at(b)) * f64::from(n))
             .sum();
         let area = all + double;
-        if !(area > 0.0) {
+        if area <= 0.0 {
             return Err(MeshFieldError::Empty { faces });
         }
         let report = &mut self.report;
