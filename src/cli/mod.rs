@@ -31,17 +31,20 @@ struct Cli {
     command: Command,
 }
 
+/// Where the options of every command stand in its help.
+const GENERAL: &str = "General options";
+
 /// What every command takes.
 #[derive(Args, Clone, Debug)]
 struct Common {
     /// Say nothing but errors
-    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    #[arg(short, long, global = true, help_heading = GENERAL, conflicts_with = "verbose")]
     quiet: bool,
     /// Say more: timings and what was found
-    #[arg(short, long, global = true)]
+    #[arg(short, long, global = true, help_heading = GENERAL)]
     verbose: bool,
     /// Threads to use; all cores by default
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, global = true, help_heading = GENERAL, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
 }
 

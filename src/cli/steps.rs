@@ -9,8 +9,8 @@ use fieldgraft::mesh::check_output;
 use fieldgraft::picture::Style;
 use fieldgraft::recipe::{GridEntry, Recipe, Source};
 use fieldgraft::run::{
-    self, FrameReport, Names, Prediction, Report, Settings, available_memory, coarsening, predict,
-    probe,
+    self, FrameReport, Names, Prediction, Report, Settings, ShapeReport, available_memory,
+    coarsening, predict, probe,
 };
 use fieldgraft::scene::{Draft, sha256};
 use std::path::Path;
@@ -76,13 +76,20 @@ pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failur
         recipe_hash: recipe_hash.clone(),
     };
     let seconds = start.elapsed().as_secs_f64();
-    watch.detail(&format!("shapes: {seconds:.2} s"));
+    for s in &scene.shapes {
+        let [field, samples] = s.seconds;
+        watch.detail(&format!(
+            "{}: field {field:.2} s, samples {samples:.2} s",
+            s.name
+        ));
+    }
     let report = Report {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         recipe: file,
         recipe_sha256: recipe_hash,
         arguments: arguments(),
         inputs: scene.inputs.clone(),
+        shapes: scene.shapes.iter().map(ShapeReport::of).collect(),
         threads: rayon::current_num_threads(),
         seconds_shapes: seconds,
         seconds_total: seconds,

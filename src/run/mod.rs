@@ -10,7 +10,7 @@ mod system;
 pub use files::{Names, place_text, time_word};
 pub use frame::{FrameResult, Work, make};
 pub use predict::{Prediction, coarsening, predict, predict_one, probe};
-pub use report::{FrameReport, Report, Seconds};
+pub use report::{FrameReport, Report, Seconds, ShapeReport};
 pub use system::{available_memory, peak_memory};
 
 use crate::job::{Cancelled, Job};

@@ -1,7 +1,7 @@
 //! `run.json`: what was made, from what, how long it took.
 
 use crate::check::{Crumbs, Health};
-use crate::scene::Input;
+use crate::scene::{Input, LiveShape};
 use serde::Serialize;
 
 /// Seconds of each stage.
@@ -68,6 +68,35 @@ impl FrameReport {
     }
 }
 
+/// One shape.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ShapeReport {
+    /// Its name.
+    pub name: String,
+    /// Volume of the inside, mm³.
+    pub volume_mm3: f64,
+    /// Lowest and highest corner of the box round it.
+    pub bbox_mm: [[f64; 3]; 2],
+    /// Seconds to make its field.
+    pub seconds_field: f64,
+    /// Seconds to sample it.
+    pub seconds_samples: f64,
+}
+
+impl ShapeReport {
+    /// What there is to tell of a shape.
+    pub fn of(s: &LiveShape) -> Self {
+        let [seconds_field, seconds_samples] = s.seconds;
+        Self {
+            name: s.name.clone(),
+            volume_mm3: s.volume,
+            bbox_mm: [s.bounds.min.to_array(), s.bounds.max.to_array()],
+            seconds_field,
+            seconds_samples,
+        }
+    }
+}
+
 /// A whole run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
@@ -81,6 +110,8 @@ pub struct Report {
     pub arguments: Vec<String>,
     /// The files read.
     pub inputs: Vec<Input>,
+    /// The shapes made of them.
+    pub shapes: Vec<ShapeReport>,
     /// Nothing here is random; the seed of what may become so.
     pub seed: u64,
     /// Threads used.

@@ -9,6 +9,7 @@ use crate::num::Aabb;
 use crate::recipe::{GridEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// A recipe whose shapes have been read and placed.
 pub struct Draft {
@@ -123,18 +124,22 @@ impl Draft {
             let (name, bounds) = (shape.name.clone(), shape.bounds);
             notes.push(shape.note.clone());
             inputs.extend(shape.input.clone());
+            let start = Instant::now();
             let (exact, found) =
                 live::exact(shape, &recipe.shapes[&name], job).map_err(|stop| match stop {
                     Stop::Problem(p) => locate(p),
                     Stop::Cancelled(c) => c.into(),
                 })?;
             notes.extend(found);
+            let made = start.elapsed().as_secs_f64();
             let (field, volume) = live::sampled(&*exact, step, job)?;
+            let seconds = [made, start.elapsed().as_secs_f64() - made];
             shapes.push(LiveShape {
                 name,
                 field,
                 volume,
                 bounds,
+                seconds,
             });
         }
         let variants = recipe

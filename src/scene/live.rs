@@ -38,6 +38,8 @@ pub struct LiveShape {
     pub volume: f64,
     /// The box round it, mm.
     pub bounds: Aabb,
+    /// Seconds to make its field and to sample it.
+    pub seconds: [f64; 2],
 }
 
 /// Reads and places a shape; `at` is its key, `like` the box of the shape it stands like.

@@ -178,11 +178,21 @@ fn cells_too_fine_for_a_file_are_refused() {
 
 #[test]
 fn dominant_frames_are_those_of_the_heavier_shape() {
-    // moved by a frame that is wholly a's, c's volume at t = 0.4 lies where a stands
-    let s =
-        scene("[morph]\nbetween = [\"a\", \"c\"]\nframes = \"dominant\"\nt = [0.4, 0.6]").unwrap();
-    let v = &s.variants[0];
-    for t in [0.4, 0.6] {
-        assert!(v.morph(t).is_ok());
-    }
+    let inside = |frames: &str, t: f64, z: f64| {
+        let s = scene(&format!(
+            "[morph]\nbetween = [\"a\", \"c\"]\nframes = \"{frames}\""
+        ));
+        let morph = s.unwrap().variants[0].morph(t).unwrap();
+        morph
+            .at(t, &Quiet)
+            .unwrap()
+            .value(glam::DVec3::new(0.0, 0.0, z))
+            < 0.0
+    };
+    // a is 10 high in a frame of 12, c reaches 20/22 of its own; in a's frame both end below 10.5,
+    // in the mean frame at 0.4 a ends near 13.8
+    assert!(inside("dominant", 0.4, 9.0) && !inside("dominant", 0.4, 11.5));
+    assert!(inside("average", 0.4, 11.5));
+    // c ends at 21 in its own frame
+    assert!(inside("dominant", 0.6, 20.0) && inside("c", 0.4, 18.0));
 }
