@@ -1,7 +1,7 @@
 //! Entries of `[[features]]`: elements on the shapes that correspond to each other.
 
+use super::primitive::{self, is_default};
 use super::shapes::ShapeEntry;
-use super::solid::{self, is_default};
 use super::source::join;
 use super::time::TimeFn;
 use super::{
@@ -115,7 +115,7 @@ impl ElementEntry {
     /// # Errors
     /// None or several shapes.
     pub fn shape(&self, at: &str) -> Result<ElementShape<'_>, Problem> {
-        let primitive = solid::only(
+        let primitive = primitive::only(
             [
                 self.box_shape.as_ref().map(Primitive::Box),
                 self.cylinder.as_ref().map(Primitive::Cylinder),
@@ -128,7 +128,7 @@ impl ElementEntry {
         match (&self.mesh, primitive) {
             (None, p) => p?
                 .map(ElementShape::Primitive)
-                .ok_or_else(|| Problem::new(at, solid::NO_SHAPE)),
+                .ok_or_else(|| Problem::new(at, primitive::NO_SHAPE)),
             (Some(m), Ok(None)) => Ok(ElementShape::Mesh(m)),
             (Some(_), _) => Err(Problem::new(
                 at,
@@ -148,15 +148,15 @@ impl ElementEntry {
                 }
             }
             ElementShape::Mesh(m) => {
-                solid::finite(&m.center.unwrap_or_default(), &format!("{at}.mesh.center"))?;
-                solid::finite(&m.rotate_deg, &format!("{at}.mesh.rotate_deg"))?;
+                primitive::finite(&m.center.unwrap_or_default(), &format!("{at}.mesh.center"))?;
+                primitive::finite(&m.rotate_deg, &format!("{at}.mesh.rotate_deg"))?;
                 let size = m.size.unwrap_or([1.0; 3]);
                 size.iter()
-                    .try_for_each(|&s| solid::positive(s, &format!("{at}.mesh.size")))?;
+                    .try_for_each(|&s| primitive::positive(s, &format!("{at}.mesh.size")))?;
             }
         }
         let (twist, taper) = (self.twist_deg.unwrap_or(0.0), self.taper.unwrap_or(1.0));
-        solid::deform(twist, taper, self.bend_deg.unwrap_or(0.0), at)
+        primitive::deform(twist, taper, self.bend_deg.unwrap_or(0.0), at)
     }
 }
 
@@ -184,7 +184,7 @@ pub(super) fn validate(
 impl FeatureEntry {
     fn validate(&self, at: &str, shapes: &BTreeMap<String, ShapeEntry>) -> Result<(), Problem> {
         let (twist, taper) = (self.twist_deg.unwrap_or(0.0), self.taper.unwrap_or(1.0));
-        solid::deform(twist, taper, self.bend_deg.unwrap_or(0.0), at)?;
+        primitive::deform(twist, taper, self.bend_deg.unwrap_or(0.0), at)?;
         if self.on.is_empty() {
             let why = format!("feature `{}` stands on no shape", self.name);
             return Err(Problem::new(format!("{at}.on"), why));
@@ -201,6 +201,6 @@ impl FeatureEntry {
             element.validate(&at)?;
         }
         let offset = self.morph.as_ref().map_or(0.0, |m| m.offset);
-        solid::finite(&[offset], &format!("{at}.morph.offset"))
+        primitive::finite(&[offset], &format!("{at}.morph.offset"))
     }
 }

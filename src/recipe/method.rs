@@ -1,6 +1,6 @@
 //! `[morph]` and `[[hybrids]]`: which method, between what, with which weights.
 
-use super::solid::{finite, is_default, positive};
+use super::primitive::{finite, is_default, positive};
 use super::source::join;
 use super::time::Times;
 use super::value::{Auto, PlainOr};
