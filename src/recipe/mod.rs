@@ -29,7 +29,7 @@ pub use shapes::{
 };
 pub use solid::{Mirror, Op, Part, Solid, SolidKind};
 pub(crate) use source::join;
-pub use source::{Problem, RecipeError, Source};
+pub use source::{Problem, RecipeError, Source, read_text};
 pub use time::{TimeFn, Times};
 pub use value::{Auto, PlainOr};
 

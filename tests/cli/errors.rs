@@ -42,6 +42,7 @@ fn a_missing_file() {
         .run(&["check", "gone.obj"])
         .fails(3, &["gone.obj", "cannot"]);
     folder.run(&["run", "gone.toml"]).fails(3, &["gone.toml"]);
+    folder.run(&["run", "."]).fails(3, &["no regular file"]);
     folder
         .run(&["morph", "low.obj", "gone.stl", "-o", "x.stl"])
         .fails(3, &["gone.stl"]);
