@@ -130,9 +130,10 @@ impl<'a> Work<'a> {
         }
         let report = &mut self.report;
         report.area = area;
-        report.open_area_share = open / area;
-        report.double_area_share = double / area;
-        report.rim_length = length;
+        // an empty sum is -0
+        report.open_area_share = open / area + 0.0;
+        report.double_area_share = double / area + 0.0;
+        report.rim_length = length + 0.0;
         Ok(())
     }
 

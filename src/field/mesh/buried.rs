@@ -12,6 +12,10 @@ use rayon::prelude::*;
 
 /// Faces worked on between two looks at the job and the limits.
 const CHUNK: usize = 2048;
+/// Work spent on cutting in all, and for each face; some seconds at most. Faces beyond are left
+/// whole, by their middles.
+const LIMIT: usize = 10_000_000;
+const LIMIT_EACH: usize = 500;
 /// Faces looked at to tell that a patch is of one class.
 const PROBES: usize = 8;
 /// Faces lower than this many slacks are no sheets but leftovers at seams.
@@ -332,11 +336,12 @@ impl Faces<'_> {
             .filter(|&f| !contacts[f as usize].is_empty())
             .collect();
         out.contact_faces = all.len();
-        let limit = 4 * self.faces.len() + 200_000;
+        let limit = LIMIT + LIMIT_EACH * self.faces.len();
+        let mut spent = 0;
         let classify = |p: DVec3, n: DVec3| self.class(p, n);
-        for chunk in all.chunks(CHUNK) {
+        for chunk in all.chunks(CHUNK / 8) {
             check(job)?;
-            let full = out.triangles.len() > limit;
+            let full = spent > limit;
             let pieces: Vec<_> = chunk
                 .par_iter()
                 .map(|&f| {
@@ -346,11 +351,14 @@ impl Faces<'_> {
                         &contacts[f as usize][..]
                     };
                     let n = self.normals[f as usize];
-                    Cutter::new(&self.triangles, &self.normals, self.scale, &classify, n)
-                        .pieces(f as usize, contacts)
+                    let mut cutter =
+                        Cutter::new(&self.triangles, &self.normals, self.scale, &classify, n);
+                    let pieces = cutter.pieces(f as usize, contacts);
+                    (pieces, cutter.spent)
                 })
                 .collect();
-            for (&f, face) in chunk.iter().zip(pieces) {
+            for (&f, (face, work)) in chunk.iter().zip(pieces) {
+                spent += work;
                 out.buried_faces += usize::from(face.iter().any(|p| p.class == Class::Buried));
                 let t = &self.triangles[f as usize];
                 let empty = face.iter().filter(|p| p.class == Class::Nothing);

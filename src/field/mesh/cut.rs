@@ -27,9 +27,11 @@ pub(super) struct Scale {
     pub floor: f64,
 }
 
-/// A face is cut to at most this many pieces, and this many more for each face that touches it.
-const PIECES: usize = 64;
-const PIECES_EACH: usize = 16;
+/// Work spent on one face at most, and more for each face that touches it, in faces looked at;
+/// asking what lies beside a piece counts as `ASK`. A leg through a seat needs some hundreds.
+const WORK: usize = 4096;
+const WORK_EACH: usize = 256;
+const ASK: usize = 16;
 /// Cuts along one branch; halving alone brings any face below any sensible floor by then.
 const DEPTH: u32 = 64;
 /// With more faces than this across a piece it is halved first, so that each half meets fewer.
@@ -101,6 +103,8 @@ pub(super) struct Cutter<'a> {
     /// The face's own normal.
     pub normal: DVec3,
     budget: usize,
+    /// Work spent so far.
+    pub spent: usize,
 }
 
 impl<'a> Cutter<'a> {
@@ -118,16 +122,18 @@ impl<'a> Cutter<'a> {
             classify,
             normal,
             budget: 0,
+            spent: 0,
         }
     }
 
     /// The pieces of face `index`, given the faces that touch it; one piece if it is all alike.
     pub(super) fn pieces(&mut self, index: usize, contacts: &[u32]) -> Vec<Piece> {
-        self.budget = PIECES + PIECES_EACH * contacts.len();
+        self.budget = WORK + WORK_EACH * contacts.len();
         self.cut(self.triangles[index].to_vec(), contacts, DEPTH)
     }
 
     fn cut(&mut self, corners: Vec<DVec3>, contacts: &[u32], depth: u32) -> Vec<Piece> {
+        self.spent += contacts.len();
         let touches = |&&b: &&u32| !apart(&corners, &self.triangles[b as usize], self.scale.slack);
         let near: Vec<u32> = contacts.iter().filter(touches).copied().collect();
         let planes: Vec<Plane> = near
@@ -135,7 +141,7 @@ impl<'a> Cutter<'a> {
             .filter_map(|&b| self.plane(&corners, b))
             .collect();
         let (size, halving) = halving(&corners);
-        let done = depth == 0 || self.budget == 0 || size < self.scale.floor;
+        let done = depth == 0 || self.spent > self.budget || size < self.scale.floor;
         let plane = match planes.first() {
             Some(_) if planes.len() > CROWD => halving,
             Some(&plane) => plane,
@@ -166,7 +172,7 @@ impl<'a> Cutter<'a> {
     }
 
     fn leaf(&mut self, corners: Vec<DVec3>, doubtful: bool) -> Piece {
-        self.budget = self.budget.saturating_sub(1);
+        self.spent += ASK;
         let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
         let class = (self.classify)(middle, self.normal);
         Piece {

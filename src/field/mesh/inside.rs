@@ -69,9 +69,9 @@ impl Inside {
         }
     }
 
-    /// The winding number of the open shells.
+    /// The winding number of the open shells, roughly.
     pub(super) fn open_number(&self, p: DVec3) -> f64 {
-        self.open.number(p, 0.5)
+        self.open.rough(p)
     }
 
     /// Whether in that ball only faces part inside from outside (before the cut at the box): the
@@ -85,7 +85,7 @@ impl Inside {
         if change >= most {
             return false;
         }
-        let part = (self.open.rough(centre) - 0.5).rem_euclid(1.0);
+        let part = (self.open_number(centre) - 0.5).rem_euclid(1.0);
         change + TREE_ERROR < part.min(1.0 - part)
     }
 }

@@ -97,9 +97,11 @@ pub(super) fn right(points: &[DVec3], faces: &mut [[u32; 3]], shells: &[Shell]) 
     });
     let mut winding: Vec<Option<Winding>> = vec![None; shells.len()];
     let mut turn = vec![false; shells.len()];
+    // what has no volume contains nothing
+    let solid = order.iter().filter(|&&i| all[i].volume != 0.0).count();
     for (rank, &i) in order.iter().enumerate() {
         // the last that contains it is the smallest
-        let container = order[..rank].iter().rev().copied().find(|&j| {
+        let container = order[..rank.min(solid)].iter().rev().copied().find(|&j| {
             if !holds(&all[j].bounds, &all[i].bounds) {
                 return false;
             }

@@ -362,6 +362,54 @@ fn a_cancelled_job_stops() {
 }
 
 #[test]
+fn an_open_sheet_does_not_hollow_a_solid() {
+    let solid = block(v(-10.0), v(10.0));
+    for part in [sheet(9.0, 0.0), flipped(sheet(9.0, 0.0)), sheet(40.0, 0.0)] {
+        let (f, _) = field(&together(&[solid.clone(), part]));
+        for p in spread(9.0, 300) {
+            let depth = 10.0 - p.abs().max_element();
+            assert!(
+                (f.value(p) + depth).abs() < 0.02,
+                "{p}: {} {depth}",
+                f.value(p)
+            );
+        }
+    }
+}
+
+#[test]
+fn the_same_field_on_any_number_of_threads() {
+    let values = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        let (f, report) = pool.install(|| field(&dirty()));
+        let bits: Vec<u64> = spread(40.0, 500)
+            .iter()
+            .map(|&p| f.value(p).to_bits())
+            .collect();
+        (bits, report)
+    };
+    assert_eq!(values(1), values(2));
+}
+
+#[test]
+fn triangles_strewn_at_random_take_no_forever() {
+    let at = spread(10.0, 1500);
+    let soup = TriMesh {
+        points: at,
+        faces: (0..500).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+    };
+    let (f, report) = MeshField::new(&soup, &thickened(0.5, Which::Open), &Quiet).unwrap();
+    assert_eq!(report.shells, 500);
+    for i in (0..500).filter(|&i| soup.area_vector(i).length() > 1.0) {
+        let [a, b, c] = soup.corners(i);
+        assert!(f.value((a + b + c) / 3.0) <= -0.25 + 1e-9);
+    }
+}
+
+#[test]
 fn the_dirty_one_is_told_as_it_is() {
     let (_, report) = field(&dirty());
     assert_eq!(report.degenerate_faces, 1);
