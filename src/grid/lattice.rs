@@ -38,9 +38,7 @@ impl Lattice {
 
     /// Number of samples in all.
     pub fn samples(&self) -> u64 {
-        self.size
-            .iter()
-            .fold(1, |n, &side| u64::saturating_mul(n, u64::from(side)))
+        self.size.iter().fold(1, |n, &side| u64::saturating_mul(n, u64::from(side)))
     }
 
     /// Whether f32 files can tell the points of a cell apart: the step is at least 256 ulps of the

@@ -126,14 +126,11 @@ impl ElementEntry {
             at,
         );
         match (&self.mesh, primitive) {
-            (None, p) => p?
-                .map(ElementShape::Primitive)
-                .ok_or_else(|| Problem::new(at, solid::NO_SHAPE)),
+            (None, p) => {
+                p?.map(ElementShape::Primitive).ok_or_else(|| Problem::new(at, solid::NO_SHAPE))
+            }
             (Some(m), Ok(None)) => Ok(ElementShape::Mesh(m)),
-            (Some(_), _) => Err(Problem::new(
-                at,
-                "`mesh` beside another shape; give one shape",
-            )),
+            (Some(_), _) => Err(Problem::new(at, "`mesh` beside another shape; give one shape")),
         }
     }
 
@@ -151,8 +148,7 @@ impl ElementEntry {
                 solid::finite(&m.center.unwrap_or_default(), &format!("{at}.mesh.center"))?;
                 solid::finite(&m.rotate_deg, &format!("{at}.mesh.rotate_deg"))?;
                 let size = m.size.unwrap_or([1.0; 3]);
-                size.iter()
-                    .try_for_each(|&s| solid::positive(s, &format!("{at}.mesh.size")))?;
+                size.iter().try_for_each(|&s| solid::positive(s, &format!("{at}.mesh.size")))?;
             }
         }
         let (twist, taper) = (self.twist_deg.unwrap_or(0.0), self.taper.unwrap_or(1.0));
@@ -193,10 +189,7 @@ impl FeatureEntry {
             let at = join(&format!("{at}.on"), shape);
             if !shapes.contains_key(shape) {
                 let hint = did_you_mean(shape, shapes.keys().map(String::as_str));
-                return Err(Problem::new(
-                    at,
-                    format!("no shape is called `{shape}`{hint}"),
-                ));
+                return Err(Problem::new(at, format!("no shape is called `{shape}`{hint}")));
             }
             element.validate(&at)?;
         }

@@ -191,24 +191,14 @@ impl Solid {
     /// # Errors
     /// The first part that has no meaning, by its key.
     pub fn validate(&self, at: &str) -> Result<(), Problem> {
-        let key = if at.is_empty() {
-            "parts".to_owned()
-        } else {
-            format!("{at}.parts")
-        };
+        let key = if at.is_empty() { "parts".to_owned() } else { format!("{at}.parts") };
         if self.parts.is_empty() {
             return Err(Problem::new(key, "a solid needs at least one part"));
         }
         if self.parts[0].op == Op::Cut {
-            return Err(Problem::new(
-                format!("{key}[0].op"),
-                "the first part has nothing to cut",
-            ));
+            return Err(Problem::new(format!("{key}[0].op"), "the first part has nothing to cut"));
         }
-        self.parts
-            .iter()
-            .enumerate()
-            .try_for_each(|(i, p)| p.validate(&format!("{key}[{i}]")))
+        self.parts.iter().enumerate().try_for_each(|(i, p)| p.validate(&format!("{key}[{i}]")))
     }
 }
 
@@ -233,10 +223,9 @@ impl Part {
         primitive.validate(&format!("{at}.{}", primitive.key()))?;
         deform(self.twist_deg, self.taper, self.bend_deg, at)?;
         match (self.op, self.blend) {
-            (Op::Blend, None) => Err(Problem::new(
-                at,
-                "op = \"blend\" needs `blend`, the fillet's width in mm",
-            )),
+            (Op::Blend, None) => {
+                Err(Problem::new(at, "op = \"blend\" needs `blend`, the fillet's width in mm"))
+            }
             (Op::Blend, Some(w)) => positive(w, &format!("{at}.blend")),
             (_, Some(_)) => Err(Problem::new(
                 format!("{at}.blend"),
@@ -334,10 +323,7 @@ pub(super) fn deform(twist: f64, taper: f64, bend: f64, at: &str) -> Result<(), 
 /// Whether all numbers are finite and of a size that arithmetic survives.
 pub(super) fn finite(x: &[f64], at: &str) -> Result<(), Problem> {
     match x.iter().find(|v| !v.is_finite() || v.abs() > 1e9) {
-        Some(v) => Err(Problem::new(
-            at,
-            format!("got {v}; expected a number of at most 1e9"),
-        )),
+        Some(v) => Err(Problem::new(at, format!("got {v}; expected a number of at most 1e9"))),
         None => Ok(()),
     }
 }
@@ -345,11 +331,7 @@ pub(super) fn finite(x: &[f64], at: &str) -> Result<(), Problem> {
 /// Whether a length or ratio is above zero.
 pub(super) fn positive(x: f64, at: &str) -> Result<(), Problem> {
     finite(&[x], at)?;
-    if x > 0.0 {
-        Ok(())
-    } else {
-        Err(Problem::new(at, format!("got {x}; expected more than 0")))
-    }
+    if x > 0.0 { Ok(()) } else { Err(Problem::new(at, format!("got {x}; expected more than 0"))) }
 }
 
 fn frame(center: &[f64; 3], rotate: &[f64; 3], at: &str) -> Result<(), Problem> {
@@ -358,8 +340,7 @@ fn frame(center: &[f64; 3], rotate: &[f64; 3], at: &str) -> Result<(), Problem> 
 }
 
 fn sizes(size: &[f64; 3], at: &str) -> Result<(), Problem> {
-    size.iter()
-        .try_for_each(|&s| positive(s, &format!("{at}.size")))
+    size.iter().try_for_each(|&s| positive(s, &format!("{at}.size")))
 }
 
 fn round(r: f64, most: f64, at: &str) -> Result<(), Problem> {
@@ -377,26 +358,17 @@ fn rod(from: &[f64; 3], to: &[f64; 3], radius: f64, at: &str) -> Result<f64, Pro
     finite(from, &format!("{at}.from"))?;
     finite(to, &format!("{at}.to"))?;
     positive(radius, &format!("{at}.radius"))?;
-    let length = (0..3)
-        .map(|i| (to[i] - from[i]).powi(2))
-        .sum::<f64>()
-        .sqrt();
+    let length = (0..3).map(|i| (to[i] - from[i]).powi(2)).sum::<f64>().sqrt();
     if length > 1e-6 {
         Ok(length)
     } else {
-        Err(Problem::new(
-            at,
-            "`from` and `to` are the same point; a rod needs a length",
-        ))
+        Err(Problem::new(at, "`from` and `to` are the same point; a rod needs a length"))
     }
 }
 
 fn polygon(p: &[[f64; 2]], at: &str) -> Result<(), Problem> {
     if !(3..=64).contains(&p.len()) {
-        return Err(Problem::new(
-            at,
-            format!("{} corners; expected 3 to 64", p.len()),
-        ));
+        return Err(Problem::new(at, format!("{} corners; expected 3 to 64", p.len())));
     }
     p.iter().try_for_each(|c| finite(c, at))?;
     let n = p.len();
@@ -415,10 +387,7 @@ fn polygon(p: &[[f64; 2]], at: &str) -> Result<(), Problem> {
         })
         .sum();
     if left + right < 3 || (left > 0 && right > 0) || round.abs() > 6.5 {
-        return Err(Problem::new(
-            at,
-            "not convex; give its corners once round, none turned in",
-        ));
+        return Err(Problem::new(at, "not convex; give its corners once round, none turned in"));
     }
     Ok(())
 }
@@ -441,9 +410,7 @@ mod tests {
     use std::path::Path;
 
     fn error(text: &str) -> String {
-        parse_solid(text, Path::new("s.toml"))
-            .unwrap_err()
-            .to_string()
+        parse_solid(text, Path::new("s.toml")).unwrap_err().to_string()
     }
 
     const SEAT: &str = "kind = \"solid\"\n[[parts]]\nname = \"seat\"\n";
@@ -474,9 +441,7 @@ prism = {{ polygon = [[0, 0], [0, 10], [10, 0]], center = [0, 0, 0], height = 5 
 
     #[test]
     fn names_file_line_key_and_meaning() {
-        let e = error(&format!(
-            "{SEAT}box = {{ centre = [0, 0, 440], size = [4, 4, 3] }}"
-        ));
+        let e = error(&format!("{SEAT}box = {{ centre = [0, 0, 440], size = [4, 4, 3] }}"));
         assert!(e.contains("s.toml:4") && e.contains("parts[0].box"), "{e}");
         assert!(e.contains("did you mean `center`?"), "{e}");
     }
@@ -486,34 +451,16 @@ prism = {{ polygon = [[0, 0], [0, 10], [10, 0]], center = [0, 0, 0], height = 5 
         for (body, why) in [
             ("", "no shape"),
             ("box = { center = [0,0,0], size = [0,1,1] }", "more than 0"),
-            (
-                "box = { center = [0,0,nan], size = [1,1,1] }",
-                "parts[0].box.center",
-            ),
-            (
-                "box = { center = [0,0,0], size = [1,1,1], round = 2 }",
-                "0 to 0.5",
-            ),
-            (
-                "capsule = { from = [0,0,0], to = [0,0,0], radius = 2 }",
-                "same point",
-            ),
-            (
-                "prism = { polygon = [[0,0],[1,0]], center = [0,0,0], height = 5 }",
-                "2 corners",
-            ),
+            ("box = { center = [0,0,nan], size = [1,1,1] }", "parts[0].box.center"),
+            ("box = { center = [0,0,0], size = [1,1,1], round = 2 }", "0 to 0.5"),
+            ("capsule = { from = [0,0,0], to = [0,0,0], radius = 2 }", "same point"),
+            ("prism = { polygon = [[0,0],[1,0]], center = [0,0,0], height = 5 }", "2 corners"),
             (
                 "prism = { polygon = [[0,0],[4,0],[1,1],[0,4]], center = [0,0,0], height = 5 }",
                 "not convex",
             ),
-            (
-                "box = { center = [0,0,0], size = [1,1,1] }\nop = \"blend\"",
-                "fillet",
-            ),
-            (
-                "box = { center = [0,0,0], size = [1,1,1] }\nop = \"cut\"",
-                "nothing to cut",
-            ),
+            ("box = { center = [0,0,0], size = [1,1,1] }\nop = \"blend\"", "fillet"),
+            ("box = { center = [0,0,0], size = [1,1,1] }\nop = \"cut\"", "nothing to cut"),
         ] {
             let e = error(&format!("{SEAT}{body}"));
             assert!(e.contains(why), "{body}: {e}");

@@ -22,17 +22,10 @@ pub(super) fn shape_names(entry: &MorphEntry, at: &str) -> Result<Vec<String>, P
             return Err(Problem::new(at, why));
         }
     };
-    let key = if entry.between.is_some() {
-        "between"
-    } else {
-        "among"
-    };
+    let key = if entry.between.is_some() { "between" } else { "among" };
     let at = format!("{at}.{key}");
     if names.len() < 2 {
-        return Err(Problem::new(
-            at,
-            format!("{} shape; a morph needs two or more", names.len()),
-        ));
+        return Err(Problem::new(at, format!("{} shape; a morph needs two or more", names.len())));
     }
     for (i, name) in names.iter().enumerate() {
         if names[..i].contains(name) {
@@ -51,10 +44,8 @@ pub(super) fn method(
 ) -> Result<MethodEntry, Problem> {
     let asked = entry.method.unwrap_or_default();
     let featured = !recipe.features.is_empty();
-    let needs = matches!(
-        asked,
-        MethodEntry::Graft | MethodEntry::Group | MethodEntry::FeatureVolume
-    );
+    let needs =
+        matches!(asked, MethodEntry::Graft | MethodEntry::Group | MethodEntry::FeatureVolume);
     let at = format!("{at}.method");
     if needs && !featured {
         let why = "this method needs features; add [[features]], or use \"space-time\"";
@@ -84,10 +75,7 @@ pub(super) fn plan(
     let names: Vec<&str> = shapes.iter().map(|s| s.name.as_str()).collect();
     let plain = matches!(method, MethodEntry::Linear | MethodEntry::SpaceTime);
     let used: &[FeatureEntry] = if plain { &[] } else { &recipe.features };
-    let rows = Rows {
-        entry,
-        names: &names,
-    };
+    let rows = Rows { entry, names: &names };
     let mut features = Vec::with_capacity(used.len());
     for (i, f) in used.iter().enumerate() {
         let elements = corresponding(f, method, &names, meshes, &format!("features[{i}]"))?;
@@ -106,20 +94,14 @@ pub(super) fn plan(
     Ok(Plan {
         shapes: shapes
             .iter()
-            .map(|s| Part {
-                name: s.name.clone(),
-                field: s.field.clone(),
-            })
+            .map(|s| Part { name: s.name.clone(), field: s.field.clone() })
             .collect(),
         features,
         course,
         blend,
         inner: inner(method, entry.inner),
         weighting: weighting(method, entry, blend, tall),
-        sharp: Weighting::Smooth {
-            epsilon: 0.01 * tall,
-            power: 4.0,
-        },
+        sharp: Weighting::Smooth { epsilon: 0.01 * tall, power: 4.0 },
         frames: frames(entry, &names, at)?,
         space_time: space_time(entry.space_time.as_ref(), names.len(), at)?,
     })
@@ -181,11 +163,8 @@ impl Rows<'_> {
     /// The row under `name`; shapes that it does not name have no share.
     fn row(&self, rows: &Weights, name: &str) -> Option<Vec<f64>> {
         let row = rows.get(name)?;
-        let all: Vec<f64> = self
-            .names
-            .iter()
-            .map(|&n| row.get(n).copied().unwrap_or(0.0))
-            .collect();
+        let all: Vec<f64> =
+            self.names.iter().map(|&n| row.get(n).copied().unwrap_or(0.0)).collect();
         // a row over other shapes only, as a hybrid of fewer shapes has, says nothing here
         (all.iter().sum::<f64>() > 0.0).then_some(all)
     }
@@ -200,38 +179,21 @@ impl Rows<'_> {
     }
 
     fn feature(&self, f: &FeatureEntry, elements: Vec<Element>) -> Feature {
-        let own = f
-            .morph
-            .as_ref()
-            .and_then(|m| m.t.as_ref())
-            .map(|t| t.0.clone());
+        let own = f.morph.as_ref().and_then(|m| m.t.as_ref()).map(|t| t.0.clone());
         let morph = match self.row(&self.entry.weights, &f.name) {
             Some(row) => Course::Fixed(row),
             None => paired(self.rest(), own),
         };
         let offset = f.morph.as_ref().map_or(0.0, |m| m.offset);
-        Feature {
-            name: f.name.clone(),
-            elements,
-            deform: morph.clone(),
-            morph,
-            offset,
-        }
+        Feature { name: f.name.clone(), elements, deform: morph.clone(), morph, offset }
     }
 
     /// Weights of the frames: own row, `default` row, own time function, else those all features
     /// share, so that the parts of a hybrid stay in proportion.
     fn deform(&self, f: &FeatureEntry, shared: Option<&Vec<f64>>) -> Course {
         let rows = &self.entry.deform_weights;
-        let own = f
-            .morph
-            .as_ref()
-            .and_then(|m| m.deform.as_ref())
-            .map(|t| t.0.clone());
-        if let Some(row) = self
-            .row(rows, &f.name)
-            .or_else(|| self.row(rows, "default"))
-        {
+        let own = f.morph.as_ref().and_then(|m| m.deform.as_ref()).map(|t| t.0.clone());
+        if let Some(row) = self.row(rows, &f.name).or_else(|| self.row(rows, "default")) {
             return Course::Fixed(row);
         }
         match shared {
@@ -288,34 +250,20 @@ fn inner(method: MethodEntry, asked: Option<InnerEntry>) -> Inner {
 /// The weighting asked for, with widths from the mean height (GRAFT, section Weights).
 fn weighting(method: MethodEntry, entry: &MorphEntry, blend: Blend, tall: f64) -> Weighting {
     let asked = match &entry.weighting {
-        None => WeightingEntry {
-            kind: WeightingKind::Smooth,
-            epsilon: None,
-            power: None,
-        },
-        Some(PlainOr::Plain(kind)) => WeightingEntry {
-            kind: *kind,
-            epsilon: None,
-            power: None,
-        },
+        None => WeightingEntry { kind: WeightingKind::Smooth, epsilon: None, power: None },
+        Some(PlainOr::Plain(kind)) => WeightingEntry { kind: *kind, epsilon: None, power: None },
         Some(PlainOr::Table(t)) => *t,
     };
     let baseline = method == MethodEntry::FeatureVolume;
     match asked.kind {
-        WeightingKind::InverseSquare => Weighting::InverseSquare {
-            epsilon: asked.epsilon.unwrap_or(0.02 * tall),
-        },
-        _ if baseline => Weighting::InverseSquare {
-            epsilon: 0.02 * tall,
-        },
+        WeightingKind::InverseSquare => {
+            Weighting::InverseSquare { epsilon: asked.epsilon.unwrap_or(0.02 * tall) }
+        }
+        _ if baseline => Weighting::InverseSquare { epsilon: 0.02 * tall },
         WeightingKind::Transfinite => Weighting::Transfinite,
         WeightingKind::Smooth => {
             // leaks of one feature's field into another's erode thin parts; positions may flow
-            let (share, power) = if blend == Blend::Fields {
-                (0.01, 4.0)
-            } else {
-                (0.03, 2.0)
-            };
+            let (share, power) = if blend == Blend::Fields { (0.01, 4.0) } else { (0.03, 2.0) };
             Weighting::Smooth {
                 epsilon: asked.epsilon.unwrap_or(share * tall),
                 power: asked.power.unwrap_or(power),
@@ -328,17 +276,11 @@ fn weighting(method: MethodEntry, entry: &MorphEntry, blend: Blend, tall: f64) -
 fn frames(entry: &MorphEntry, names: &[&str], at: &str) -> Result<Frames, Problem> {
     match entry.frames.as_deref() {
         None | Some("average" | "dominant") => Ok(Frames::Average),
-        Some(name) => names
-            .iter()
-            .position(|&n| n == name)
-            .map(Frames::Of)
-            .ok_or_else(|| {
-                let why = format!(
-                    "`{name}` takes no part in this morph; it is of {}",
-                    names.join(", ")
-                );
-                Problem::new(format!("{at}.frames"), why)
-            }),
+        Some(name) => names.iter().position(|&n| n == name).map(Frames::Of).ok_or_else(|| {
+            let why =
+                format!("`{name}` takes no part in this morph; it is of {}", names.join(", "));
+            Problem::new(format!("{at}.frames"), why)
+        }),
     }
 }
 
@@ -365,10 +307,5 @@ fn space_time(
         Some(FormEntry::HalfCylinders) => Form::HalfCylinders,
     };
     let a3 = entry.a3.unwrap_or(SpaceTime::default().a3);
-    Ok(SpaceTime {
-        form,
-        a0: entry.a0.value().copied(),
-        a,
-        a3,
-    })
+    Ok(SpaceTime { form, a0: entry.a0.value().copied(), a, a3 })
 }

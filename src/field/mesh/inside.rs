@@ -28,12 +28,7 @@ impl Inside {
     ) -> Self {
         let (closed, open) = (Winding::new(closed), Winding::new(open));
         let bounds = closed.bounds().hull(open.bounds());
-        Self {
-            closed,
-            open,
-            rim: Rim::new(rim),
-            bounds,
-        }
+        Self { closed, open, rim: Rim::new(rim), bounds }
     }
 
     /// The box round all faces; everything outside it is outside.
@@ -62,11 +57,7 @@ impl Inside {
     }
 
     fn closed_number(&self, p: DVec3) -> f64 {
-        if self.closed.bounds().contains(p) {
-            self.closed.number(p, 0.5).round()
-        } else {
-            0.0
-        }
+        if self.closed.bounds().contains(p) { self.closed.number(p, 0.5).round() } else { 0.0 }
     }
 
     /// The winding number of the open shells, roughly.
