@@ -19,8 +19,7 @@ fn ball() -> TriMesh {
         p * (250.0 + 25.0 * (9.0 * p.x).sin() * (7.0 * p.y).cos() * (8.0 * p.z).sin())
     };
     let mut mesh = TriMesh::default();
-    mesh.points
-        .extend([dvec3(0.0, 0.0, -250.0), dvec3(0.0, 0.0, 250.0)]);
+    mesh.points.extend([dvec3(0.0, 0.0, -250.0), dvec3(0.0, 0.0, 250.0)]);
     for j in 1..bands {
         mesh.points.extend((0..sectors).map(|i| at(i, j)));
     }
@@ -32,10 +31,7 @@ fn ball() -> TriMesh {
     for i in 0..sectors {
         for j in 0..bands {
             let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
-            let both = [
-                (j > 0).then_some([a, b, c]),
-                (j + 1 < bands).then_some([a, c, d]),
-            ];
+            let both = [(j > 0).then_some([a, b, c]), (j + 1 < bands).then_some([a, c, d])];
             mesh.faces.extend(both.into_iter().flatten());
         }
     }
@@ -52,9 +48,7 @@ fn bricks() -> Vec<DVec3> {
         let z = f64::from(k) / 16.0 - 1.0;
         dvec3(c, s, 0.0) * (1.0 - z * z).max(0.0).sqrt() + DVec3::Z * z
     };
-    (0..32)
-        .flat_map(|k| (0..512).map(move |i| turn(k) * 250.0 + offset(i)))
-        .collect()
+    (0..32).flat_map(|k| (0..512).map(move |i| turn(k) * 250.0 + offset(i))).collect()
 }
 
 fn field(c: &mut Criterion) {
@@ -67,9 +61,7 @@ fn field(c: &mut Criterion) {
     let mut one = c.benchmark_group("build");
     one.sample_size(10);
     one.bench_function("bvh", |b| b.iter(|| Bvh::new(black_box(&corners))));
-    one.bench_function("field", |b| {
-        b.iter_batched(|| (), |()| build(), BatchSize::PerIteration)
-    });
+    one.bench_function("field", |b| b.iter_batched(|| (), |()| build(), BatchSize::PerIteration));
     one.finish();
 
     let mut many = c.benchmark_group("point");

@@ -19,10 +19,7 @@ fn part(path: &str) -> Result<Part, Box<dyn Error>> {
     for line in report.summary() {
         eprintln!("{path}: {line}");
     }
-    Ok(Part {
-        name: path.to_owned(),
-        field: Arc::new(field),
-    })
+    Ok(Part { name: path.to_owned(), field: Arc::new(field) })
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -41,10 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let samples = sample(&*half, lattice, &Quiet)?;
     let mesh = extract(&samples.bricks, Mesher::Cone, &Quiet)?;
     let health = inspect(&mesh, &Options::default());
-    println!(
-        "{} triangles, printable: {}",
-        health.triangles, health.printable
-    );
+    println!("{} triangles, printable: {}", health.triangles, health.printable);
     write(Path::new(out), &mesh, "two files half way", true)?;
     Ok(())
 }

@@ -41,21 +41,11 @@ impl Field for GyroidBall {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let out = std::env::args().nth(1).ok_or("usage: own_field OUT")?;
-    let gyroid = GyroidBall {
-        radius: 40.0,
-        period: 30.0,
-        thickness: 4.0,
-    };
+    let gyroid = GyroidBall { radius: 40.0, period: 30.0, thickness: 4.0 };
     let block = Element::block(DVec3::ZERO, DVec3::splat(30.0), DQuat::IDENTITY)?;
     let parts = vec![
-        Part {
-            name: "gyroid".into(),
-            field: Arc::new(gyroid),
-        },
-        Part {
-            name: "box".into(),
-            field: Arc::new(Solid::new(&block, 6.0)),
-        },
+        Part { name: "gyroid".into(), field: Arc::new(gyroid) },
+        Part { name: "box".into(), field: Arc::new(Solid::new(&block, 6.0)) },
     ];
     let morph = build(Plan::whole(parts, Inner::Linear))?;
     let field = morph.at(0.35, &Quiet)?;

@@ -24,9 +24,5 @@ pub struct Cancelled;
 
 /// `Err(Cancelled)` once the job is cancelled; the one-line check inside long loops.
 pub fn check(job: &dyn Job) -> Result<(), Cancelled> {
-    if job.cancelled() {
-        Err(Cancelled)
-    } else {
-        Ok(())
-    }
+    if job.cancelled() { Err(Cancelled) } else { Ok(()) }
 }

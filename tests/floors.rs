@@ -32,18 +32,12 @@ fn sources(dir: &Path, out: &mut Vec<PathBuf>) {
 }
 
 fn word(s: &str) -> String {
-    s.trim_start()
-        .chars()
-        .take_while(|c| c.is_alphanumeric() || *c == '_')
-        .collect()
+    s.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
 }
 
 /// Top-level modules named after `crate::`, braces included.
 fn imports(text: &str) -> BTreeSet<String> {
-    let code: Vec<&str> = text
-        .lines()
-        .map(|l| l.split("//").next().unwrap())
-        .collect();
+    let code: Vec<&str> = text.lines().map(|l| l.split("//").next().unwrap()).collect();
     let code = code.join(" ");
     let mut found = BTreeSet::new();
     for tail in code.split("crate::").skip(1) {
@@ -84,13 +78,7 @@ fn imports_point_down() {
     let mut wrong = Vec::new();
     for file in files {
         let rel = file.strip_prefix(&root).unwrap();
-        let first = rel
-            .components()
-            .next()
-            .unwrap()
-            .as_os_str()
-            .to_str()
-            .unwrap();
+        let first = rel.components().next().unwrap().as_os_str().to_str().unwrap();
         let me = first.trim_end_matches(".rs").to_owned();
         if me == "lib" || me == "main" {
             continue;
@@ -111,9 +99,5 @@ fn imports_point_down() {
             }
         }
     }
-    assert!(
-        wrong.is_empty(),
-        "imports must point down:\n{}",
-        wrong.join("\n")
-    );
+    assert!(wrong.is_empty(), "imports must point down:\n{}", wrong.join("\n"));
 }

@@ -32,9 +32,8 @@ impl Folder {
     /// Names of all files in the folder, hidden ones too, sorted.
     pub fn names(&self) -> Vec<String> {
         let all = fs::read_dir(self.path()).unwrap();
-        let mut names: Vec<String> = all
-            .map(|e| e.unwrap().file_name().into_string().unwrap())
-            .collect();
+        let mut names: Vec<String> =
+            all.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
     }
@@ -42,11 +41,7 @@ impl Folder {
     /// Runs the command in the folder.
     pub fn run(&self, args: &[&str]) -> Ran {
         let output = self.command(args).output().unwrap();
-        Ran {
-            line: args.join(" "),
-            folder: self.path().to_owned(),
-            output,
-        }
+        Ran { line: args.join(" "), folder: self.path().to_owned(), output }
     }
 
     /// The command, to be run in the folder.
@@ -114,11 +109,7 @@ pub fn block(centre: [f64; 3], half: [f64; 3]) -> String {
     let mut text = String::new();
     for i in 0..8 {
         let side = |axis: usize| {
-            if i >> axis & 1 == 1 {
-                half[axis]
-            } else {
-                -half[axis]
-            }
+            if i >> axis & 1 == 1 { half[axis] } else { -half[axis] }
         };
         let p: Vec<String> = (0..3).map(|a| (centre[a] + side(a)).to_string()).collect();
         text += &format!("v {}\n", p.join(" "));

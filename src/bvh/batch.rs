@@ -39,13 +39,7 @@ impl Bvh {
     /// The nearest triangle for each point: exactly the distance [`Bvh::nearest`] gives. Any order
     /// of points is right; runs of 64 that fill a small cube are fast.
     pub fn nearest_all(&self, at: &[DVec3]) -> Vec<Hit> {
-        let mut out = vec![
-            Hit {
-                distance2: f64::INFINITY,
-                slot: u32::MAX
-            };
-            at.len()
-        ];
+        let mut out = vec![Hit { distance2: f64::INFINITY, slot: u32::MAX }; at.len()];
         if self.is_empty() {
             return out;
         }
@@ -68,24 +62,13 @@ impl Bvh {
             }
             return;
         }
-        let boxes: Vec<Aabb> = at
-            .chunks(LANES)
-            .map(|p| Aabb::of(p.iter().copied()))
-            .collect();
+        let boxes: Vec<Aabb> = at.chunks(LANES).map(|p| Aabb::of(p.iter().copied())).collect();
         let middles: Vec<DVec3> = boxes.iter().map(Aabb::centre).collect();
         let octet = Octet::of(&middles);
         s.centres.clear();
-        s.centres.extend(
-            s.run
-                .iter()
-                .map(|&i| octet.distances2(&self.tris[i as usize])),
-        );
+        s.centres.extend(s.run.iter().map(|&i| octet.distances2(&self.tris[i as usize])));
         for (k, (at, out)) in at.chunks(LANES).zip(out.chunks_mut(LANES)).enumerate() {
-            let nearest = s
-                .centres
-                .iter()
-                .fold(f64::INFINITY, |m, d| m.min(d[k]))
-                .sqrt();
+            let nearest = s.centres.iter().fold(f64::INFINITY, |m, d| m.min(d[k])).sqrt();
             // whatever is nearest to some point of the box is this near to its centre
             let reach = nearest + 2.0 * boxes[k].radius() + 4.0 * self.slack(middles[k]);
             let reach2 = reach * reach;
@@ -110,9 +93,7 @@ impl Bvh {
 
     /// [`Bvh::closest`] with the reach that the point searched for before leaves.
     fn closest_after(&self, p: DVec3, s: &mut Scratch) -> (f64, u32) {
-        let reach = s.last.map_or(f64::INFINITY, |(q, d)| {
-            d + p.distance(q) + 4.0 * self.slack(p)
-        });
+        let reach = s.last.map_or(f64::INFINITY, |(q, d)| d + p.distance(q) + 4.0 * self.slack(p));
         // a point that is no number has no reach
         let reach = reach.min(f64::INFINITY);
         let found = self.closest(p, reach * reach, &mut s.stack);
@@ -148,10 +129,7 @@ impl Bvh {
         }
         for ((out, d2), slot) in out.iter_mut().zip(best).zip(slot) {
             let slot = if slot.is_nan() { u32::MAX } else { slot as u32 };
-            *out = Hit {
-                distance2: d2,
-                slot,
-            };
+            *out = Hit { distance2: d2, slot };
         }
     }
 }

@@ -42,9 +42,7 @@ fn gap(a: &[DVec3], b: &[DVec3], axis: DVec3) -> f64 {
     let shadow = |p: &[DVec3]| {
         p.iter()
             .map(|p| p.dot(axis))
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
-                (lo.min(x), hi.max(x))
-            })
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)))
     };
     let ((alo, ahi), (blo, bhi)) = (shadow(a), shadow(b));
     (alo - bhi).max(blo - ahi) / length
@@ -57,21 +55,9 @@ mod tests {
 
     #[test]
     fn crossing_touching_and_separate_triangles() {
-        let flat = [
-            dvec3(0.0, 0.0, 0.0),
-            dvec3(4.0, 0.0, 0.0),
-            dvec3(0.0, 4.0, 0.0),
-        ];
-        let through = [
-            dvec3(1.0, 1.0, -1.0),
-            dvec3(1.0, 1.0, 1.0),
-            dvec3(9.0, 9.0, 0.0),
-        ];
-        let standing = [
-            dvec3(1.0, 1.0, 0.0),
-            dvec3(2.0, 1.0, 0.0),
-            dvec3(1.0, 1.0, 3.0),
-        ];
+        let flat = [dvec3(0.0, 0.0, 0.0), dvec3(4.0, 0.0, 0.0), dvec3(0.0, 4.0, 0.0)];
+        let through = [dvec3(1.0, 1.0, -1.0), dvec3(1.0, 1.0, 1.0), dvec3(9.0, 9.0, 0.0)];
+        let standing = [dvec3(1.0, 1.0, 0.0), dvec3(2.0, 1.0, 0.0), dvec3(1.0, 1.0, 3.0)];
         let above = standing.map(|p| p + dvec3(0.0, 0.0, 0.01));
         let beside = flat.map(|p| p + dvec3(3.0, 3.0, 0.0));
         let overlapping = flat.map(|p| p + dvec3(1.0, 1.0, 0.0));
@@ -81,15 +67,7 @@ mod tests {
         assert!(!apart(&flat, &above, 0.02));
         assert!(apart(&flat, &beside, 0.1));
         assert!(!apart(&flat, &overlapping, 1e-9));
-        assert!(!apart(
-            &flat,
-            &[dvec3(1.0, 1.0, -1.0), dvec3(1.0, 1.0, 1.0)],
-            0.0
-        ));
-        assert!(apart(
-            &flat,
-            &[dvec3(3.0, 3.0, -1.0), dvec3(3.0, 3.0, 1.0)],
-            0.1
-        ));
+        assert!(!apart(&flat, &[dvec3(1.0, 1.0, -1.0), dvec3(1.0, 1.0, 1.0)], 0.0));
+        assert!(apart(&flat, &[dvec3(3.0, 3.0, -1.0), dvec3(3.0, 3.0, 1.0)], 0.1));
     }
 }

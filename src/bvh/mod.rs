@@ -50,17 +50,10 @@ impl Bvh {
     /// The tree over some triangles, all coordinates finite.
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
         let bounds = Aabb::of(triangles.iter().flatten().copied());
-        let magnitude = triangles
-            .iter()
-            .flatten()
-            .fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
-        let mut bvh = Self {
-            nodes: vec![],
-            tris: vec![],
-            corners: vec![],
-            faces: vec![],
-            magnitude,
-        };
+        let magnitude =
+            triangles.iter().flatten().fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
+        let mut bvh =
+            Self { nodes: vec![], tris: vec![], corners: vec![], faces: vec![], magnitude };
         bvh.lay_out(&shape(triangles, &bounds), triangles);
         bvh.fit();
         bvh
@@ -86,11 +79,7 @@ impl Bvh {
         if triangles.is_empty() {
             return;
         }
-        let blank = Node {
-            bounds: Aabb::EMPTY,
-            first: 0,
-            count: 0,
-        };
+        let blank = Node { bounds: Aabb::EMPTY, first: 0, count: 0 };
         self.nodes.push(blank);
         let mut open = vec![(0u32, 0usize)];
         while let Some((source, place)) = open.pop() {
@@ -104,11 +93,7 @@ impl Bvh {
                     self.corners.push(corners);
                     self.faces.push(face);
                 }
-                self.nodes[place] = Node {
-                    first,
-                    count: node.prim_count,
-                    ..blank
-                };
+                self.nodes[place] = Node { first, count: node.prim_count, ..blank };
             } else {
                 let first = self.nodes.len();
                 self.nodes.extend([blank, blank]);
@@ -147,15 +132,7 @@ fn shape(triangles: &[[DVec3; 3]], bounds: &Aabb) -> obvhs::bvh2::Bvh2 {
     let unit = |p: DVec3| ((p - bounds.centre()) * scale).as_vec3a();
     let small: Vec<_> = triangles
         .iter()
-        .map(|t| Triangle {
-            v0: unit(t[0]),
-            v1: unit(t[1]),
-            v2: unit(t[2]),
-        })
+        .map(|t| Triangle { v0: unit(t[0]), v1: unit(t[1]), v2: unit(t[2]) })
         .collect();
-    build_bvh2_from_tris(
-        &small,
-        BvhBuildParams::medium_build(),
-        &mut Default::default(),
-    )
+    build_bvh2_from_tris(&small, BvhBuildParams::medium_build(), &mut Default::default())
 }

@@ -26,10 +26,7 @@ fn distance2(b: &Aabb, p: DVec3) -> f64 {
 
 /// Squared distance between two boxes.
 fn gap2(a: &Aabb, b: &Aabb) -> f64 {
-    (a.min - b.max)
-        .max(b.min - a.max)
-        .max(DVec3::ZERO)
-        .length_squared()
+    (a.min - b.max).max(b.min - a.max).max(DVec3::ZERO).length_squared()
 }
 
 impl Bvh {
@@ -46,9 +43,7 @@ impl Bvh {
 
     /// Distance to the nearest point, infinite for an empty set.
     pub fn distance(&self, p: DVec3) -> f64 {
-        self.closest(p, f64::INFINITY, &mut Vec::with_capacity(64))
-            .0
-            .sqrt()
+        self.closest(p, f64::INFINITY, &mut Vec::with_capacity(64)).0.sqrt()
     }
 
     pub(super) fn describe(&self, p: DVec3, d2: f64, slot: u32) -> Nearest {

@@ -33,11 +33,7 @@ impl Rim {
                 lengths[first] + lengths[first + 1]
             };
         }
-        Self {
-            bvh,
-            lengths,
-            edges,
-        }
+        Self { bvh, lengths, edges }
     }
 
     /// Length of all rims, mm.
@@ -58,11 +54,7 @@ impl Rim {
             if total > most {
                 return f64::INFINITY;
             }
-            let Node {
-                bounds,
-                first,
-                count,
-            } = self.bvh.nodes[index as usize];
+            let Node { bounds, first, count } = self.bvh.nodes[index as usize];
             let far = bounds.distance(centre) - radius;
             if far > 2.0 * bounds.radius() {
                 total += self.lengths[index as usize] / (far * far);

@@ -77,17 +77,10 @@ fn coinciding_triangles_are_all_kept() {
 fn points_that_are_not_finite_have_no_nearest() {
     let bvh = Bvh::new(&ball(6, 0.0));
     let bad = [DVec3::NAN, DVec3::INFINITY, dvec3(f64::NAN, 0.0, 0.0)];
-    assert!(
-        bad.iter()
-            .all(|&p| bvh.nearest(p).is_none_or(|n| n.distance.is_infinite()))
-    );
+    assert!(bad.iter().all(|&p| bvh.nearest(p).is_none_or(|n| n.distance.is_infinite())));
     // and do not spoil those that come after them
     let mixed = [vec![DVec3::X; 9], bad.to_vec(), vec![DVec3::Y * 3.0; 60]].concat();
-    for (p, hit) in mixed
-        .iter()
-        .zip(bvh.nearest_all(&mixed))
-        .filter(|(p, _)| p.is_finite())
-    {
+    for (p, hit) in mixed.iter().zip(bvh.nearest_all(&mixed)).filter(|(p, _)| p.is_finite()) {
         assert_eq!(hit.distance2.sqrt(), bvh.distance(*p));
     }
 }
@@ -96,11 +89,9 @@ fn points_that_are_not_finite_have_no_nearest() {
 fn a_lattice_of_points_agrees_with_single_queries() {
     let tris = ball(40, 0.1);
     let bvh = Bvh::new(&tris);
-    for (origin, step) in [
-        (DVec3::splat(0.5), 0.02),
-        (dvec3(0.9, -0.1, 0.0), 0.01),
-        (DVec3::splat(-0.4), 0.1),
-    ] {
+    for (origin, step) in
+        [(DVec3::splat(0.5), 0.02), (dvec3(0.9, -0.1, 0.0), 0.01), (DVec3::splat(-0.4), 0.1)]
+    {
         let at = cube(origin, step);
         for (p, hit) in at.iter().zip(bvh.nearest_all(&at)) {
             assert_eq!(hit.distance2.sqrt(), bvh.distance(*p));
@@ -124,25 +115,19 @@ fn the_winding_number_is_right_far_near_and_inside() {
 #[test]
 fn moments_of_the_third_order_fall_with_the_fourth_power() {
     // seen from afar the whole set is one dipole; an open half ball has all moments
-    let half: Vec<_> = ball(24, 0.1)
-        .into_iter()
-        .filter(|t| t.iter().all(|p| p.z + 0.3 * p.x > 0.0))
-        .collect();
+    let half: Vec<_> =
+        ball(24, 0.1).into_iter().filter(|t| t.iter().all(|p| p.z + 0.3 * p.x > 0.0)).collect();
     let winding = Winding::new(&half);
     let d = winding.dipoles[0];
     let error = |r: f64| {
-        [
-            dvec3(1.0, 2.0, 3.0),
-            dvec3(-2.0, 1.0, 0.5),
-            dvec3(0.1, -1.0, -1.0),
-        ]
-        .map(|dir| {
-            let q = d.centre + dir.normalize() * r;
-            let far = d.solid_angle(d.centre - q, r * r) / (2.0 * TAU);
-            (far - winding.exact(q)).abs()
-        })
-        .into_iter()
-        .fold(0.0, f64::max)
+        [dvec3(1.0, 2.0, 3.0), dvec3(-2.0, 1.0, 0.5), dvec3(0.1, -1.0, -1.0)]
+            .map(|dir| {
+                let q = d.centre + dir.normalize() * r;
+                let far = d.solid_angle(d.centre - q, r * r) / (2.0 * TAU);
+                (far - winding.exact(q)).abs()
+            })
+            .into_iter()
+            .fold(0.0, f64::max)
     };
     // the first term left out falls with r^-5
     let order = (error(8.0) / error(16.0)).log2();

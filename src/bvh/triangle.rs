@@ -37,11 +37,7 @@ pub(super) struct Local {
 /// Unit direction and length of a plane vector; a zero vector counts as direction x.
 fn direction(x: f64, y: f64) -> [f64; 3] {
     let length = x.hypot(y);
-    if length > 0.0 {
-        [x / length, y / length, length]
-    } else {
-        [1.0, 0.0, 0.0]
-    }
+    if length > 0.0 { [x / length, y / length, length] } else { [1.0, 0.0, 0.0] }
 }
 
 /// `clamp` that vectorises: no NaN handling.
@@ -65,20 +61,10 @@ impl Tri {
         // the part of AC across AB keeps v and n square to u even on a sliver
         let across = (c - a) - u * (c - a).dot(u);
         let v = across - u * across.dot(u);
-        let v = v
-            .try_normalize()
-            .unwrap_or_else(|| u.any_orthonormal_vector());
+        let v = v.try_normalize().unwrap_or_else(|| u.any_orthonormal_vector());
         let ab = (b - a).dot(u);
         let (cx, cy) = ((c - a).dot(u), (c - a).dot(v));
-        Self {
-            a,
-            u,
-            v,
-            n: u.cross(v),
-            ab,
-            bc: direction(cx - ab, cy),
-            ac: direction(cx, cy),
-        }
+        Self { a, u, v, n: u.cross(v), ab, bc: direction(cx - ab, cy), ac: direction(cx, cy) }
     }
 
     /// Squared distance.
@@ -98,10 +84,7 @@ impl Tri {
         let over_c = along_c - clip(along_c, cl);
         let sides = least(
             over_a * over_a + y * y,
-            least(
-                over_b * over_b + perp_b * perp_b,
-                over_c * over_c + perp_c * perp_c,
-            ),
+            least(over_b * over_b + perp_b * perp_b, over_c * over_c + perp_c * perp_c),
         );
         let inside = least(y, least(perp_b, perp_c));
         z * z + if inside > 0.0 { 0.0 } else { sides }
@@ -119,21 +102,11 @@ impl Tri {
             [x, y]
         } else {
             let (b, c) = (clip(q * bx + y * by, bl), clip(x * cx + y * cy, cl));
-            let sides = [
-                [clip(x, self.ab), 0.0],
-                [self.ab + b * bx, b * by],
-                [c * cx, c * cy],
-            ];
+            let sides = [[clip(x, self.ab), 0.0], [self.ab + b * bx, b * by], [c * cx, c * cy]];
             let far = |s: [f64; 2]| (s[0] - x).powi(2) + (s[1] - y).powi(2);
-            sides
-                .into_iter()
-                .fold(sides[0], |m, s| if far(s) < far(m) { s } else { m })
+            sides.into_iter().fold(sides[0], |m, s| if far(s) < far(m) { s } else { m })
         };
-        Local {
-            height: z,
-            inside,
-            point: self.a + self.u * foot[0] + self.v * foot[1],
-        }
+        Local { height: z, inside, point: self.a + self.u * foot[0] + self.v * foot[1] }
     }
 }
 
@@ -150,11 +123,7 @@ impl Octet {
     pub(super) fn of(at: &[DVec3]) -> Self {
         let pick = |i: usize| at.get(i).or(at.last()).copied().unwrap_or(DVec3::ZERO);
         let p: [DVec3; LANES] = std::array::from_fn(pick);
-        Self {
-            x: p.map(|p| p.x),
-            y: p.map(|p| p.y),
-            z: p.map(|p| p.z),
-        }
+        Self { x: p.map(|p| p.x), y: p.map(|p| p.y), z: p.map(|p| p.z) }
     }
 
     /// Squared distances to a triangle.
@@ -203,12 +172,7 @@ mod tests {
     #[test]
     fn a_triangle_without_area_is_a_segment_or_a_point() {
         let (a, b) = (dvec3(1.0, 0.0, 0.0), dvec3(5.0, 0.0, 0.0));
-        for corners in [
-            [a, b, b],
-            [a, a, b],
-            [a, b, dvec3(3.0, 0.0, 0.0)],
-            [b, a, a],
-        ] {
+        for corners in [[a, b, b], [a, a, b], [a, b, dvec3(3.0, 0.0, 0.0)], [b, a, a]] {
             assert!((distance(corners, dvec3(8.0, 4.0, 0.0)) - 5.0).abs() < 1e-14);
             assert!((distance(corners, dvec3(9.0, 0.0, 0.0)) - 4.0).abs() < 1e-14);
             assert!((distance(corners, dvec3(2.0, 0.0, 1.0)) - 1.0).abs() < 1e-14);
@@ -218,11 +182,7 @@ mod tests {
 
     #[test]
     fn a_sliver_is_as_near_as_its_longest_side() {
-        let t = [
-            DVec3::ZERO,
-            dvec3(100.0, 0.0, 0.0),
-            dvec3(40.0, 1e-13, 1e-13),
-        ];
+        let t = [DVec3::ZERO, dvec3(100.0, 0.0, 0.0), dvec3(40.0, 1e-13, 1e-13)];
         for (p, d) in [(dvec3(50.0, 3.0, 4.0), 5.0), (dvec3(103.0, 4.0, 0.0), 5.0)] {
             assert!((distance(t, p) - d).abs() < 1e-12);
         }

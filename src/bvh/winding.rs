@@ -58,14 +58,7 @@ impl Moments {
     fn at(centre: DVec3) -> Self {
         let (zero, none) = (DVec3::ZERO, DMat3::ZERO);
         let (second, third) = ([zero; 3], [none; 3]);
-        Self {
-            area: 0.0,
-            centre,
-            radius: 0.0,
-            first: zero,
-            second,
-            third,
-        }
+        Self { area: 0.0, centre, radius: 0.0, first: zero, second, third }
     }
 
     fn add_triangle(&mut self, corners: &[DVec3; 3]) {
@@ -96,9 +89,7 @@ impl Moments {
     }
 
     fn dipole(&self, bounds: &Aabb) -> Dipole {
-        let far = (self.centre - bounds.min)
-            .max(bounds.max - self.centre)
-            .length();
+        let far = (self.centre - bounds.min).max(bounds.max - self.centre).length();
         let m = &self.second;
         let t = |i: usize, j: usize, k: usize| self.third[i].col(j)[k];
         let line = |k: usize| (0..3).map(|i| 2.0 * t(i, i, k) + t(k, i, i)).sum();
@@ -109,14 +100,7 @@ impl Moments {
             radius2: self.radius.min(far).powi(2),
             first: self.first,
             trace: m[0].x + m[1].y + m[2].z,
-            second: [
-                m[0].x,
-                m[1].y,
-                m[2].z,
-                m[0].y + m[1].x,
-                m[0].z + m[2].x,
-                m[1].z + m[2].y,
-            ],
+            second: [m[0].x, m[1].y, m[2].z, m[0].y + m[1].x, m[0].z + m[2].x, m[1].z + m[2].y],
             third_line: DVec3::new(line(0), line(1), line(2)),
             third: [
                 t(0, 0, 0),
@@ -156,10 +140,7 @@ impl Dipole {
 fn half_angle([a, b, c]: [DVec3; 3]) -> (f64, f64) {
     let (la, lb, lc) = (a.length(), b.length(), c.length());
     let across = a.dot(b.cross(c));
-    (
-        la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb,
-        across,
-    )
+    (la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb, across)
 }
 
 /// Angles in (-pi, pi] summed as a product of complex numbers: one arc tangent for all, and the
@@ -220,11 +201,7 @@ impl Winding {
             }
             w = self.tree(q, beta, stack);
         }
-        if (w - level).abs() < EXACT {
-            self.exact(q)
-        } else {
-            w
-        }
+        if (w - level).abs() < EXACT { self.exact(q) } else { w }
     }
 
     /// The winding number as the tree has it at once, off by some hundredths at worst.
@@ -239,11 +216,7 @@ impl Winding {
 
     fn sum(&self, first: u32, count: u32, q: DVec3) -> f64 {
         let slots = first as usize..(first + count) as usize;
-        let mut angles = Angles {
-            re: 1.0,
-            im: 0.0,
-            turns: 0.0,
-        };
+        let mut angles = Angles { re: 1.0, im: 0.0, turns: 0.0 };
         for t in &self.bvh.corners[slots] {
             angles.add(half_angle(t.map(|p| p - q)));
         }
@@ -281,19 +254,12 @@ fn dipoles(bvh: &Bvh) -> Vec<Dipole> {
     for (i, node) in bvh.nodes.iter().enumerate().rev() {
         let first = node.first as usize;
         moments[i] = if node.count > 0 {
-            of_triangles(
-                &bvh.corners[first..first + node.count as usize],
-                &node.bounds,
-            )
+            of_triangles(&bvh.corners[first..first + node.count as usize], &node.bounds)
         } else {
             of_children(&moments[first], &moments[first + 1], &node.bounds)
         };
     }
-    bvh.nodes
-        .iter()
-        .zip(&moments)
-        .map(|(n, m)| m.dipole(&n.bounds))
-        .collect()
+    bvh.nodes.iter().zip(&moments).map(|(n, m)| m.dipole(&n.bounds)).collect()
 }
 
 fn of_triangles(triangles: &[[DVec3; 3]], bounds: &Aabb) -> Moments {
@@ -303,11 +269,7 @@ fn of_triangles(triangles: &[[DVec3; 3]], bounds: &Aabb) -> Moments {
         centre += (a + b + c) * (part / 3.0);
         area += part;
     }
-    let mut m = Moments::at(if area > 0.0 {
-        centre / area
-    } else {
-        bounds.centre()
-    });
+    let mut m = Moments::at(if area > 0.0 { centre / area } else { bounds.centre() });
     triangles.iter().for_each(|t| m.add_triangle(t));
     m
 }
@@ -329,11 +291,7 @@ mod tests {
     #[test]
     fn angles_add_up_over_full_turns() {
         for step in [0.3f64, -0.3, 2.9, -2.9, 1.7] {
-            let mut sum = Angles {
-                re: 1.0,
-                im: 0.0,
-                turns: 0.0,
-            };
+            let mut sum = Angles { re: 1.0, im: 0.0, turns: 0.0 };
             for n in 1..200 {
                 sum.add((step.cos() * 1e3, step.sin() * 1e3));
                 assert!((sum.total() - step * f64::from(n)).abs() < 1e-10);
@@ -343,11 +301,8 @@ mod tests {
 
     #[test]
     fn an_octant_is_an_eighth_of_the_sphere() {
-        let (re, im) = half_angle([
-            dvec3(2.0, 0.0, 0.0),
-            dvec3(0.0, 3.0, 0.0),
-            dvec3(0.0, 0.0, 1.0),
-        ]);
+        let (re, im) =
+            half_angle([dvec3(2.0, 0.0, 0.0), dvec3(0.0, 3.0, 0.0), dvec3(0.0, 0.0, 1.0)]);
         assert!((im.atan2(re) - std::f64::consts::FRAC_PI_4).abs() < 1e-15);
     }
 }

@@ -15,11 +15,7 @@ const FARTHEST: f64 = 1e100;
 /// Whether each face meets another beyond the vertices and the edge they share. Faces without
 /// area are left out. `None` when some point is not finite, or absurdly far away.
 pub(super) fn contacts(mesh: &Welded) -> Option<Vec<bool>> {
-    if !mesh
-        .points
-        .iter()
-        .all(|p| p.abs().cmplt(DVec3::splat(FARTHEST)).all())
-    {
+    if !mesh.points.iter().all(|p| p.abs().cmplt(DVec3::splat(FARTHEST)).all()) {
         return None;
     }
     let mut faces = Vec::with_capacity(mesh.faces.len());
@@ -43,11 +39,7 @@ fn meetings(triangles: &[Triangle]) -> Vec<bool> {
     if boxes.is_empty() {
         return Vec::new();
     }
-    let tree = build_bvh2(
-        &boxes,
-        BvhBuildParams::fast_build(),
-        &mut Default::default(),
-    );
+    let tree = build_bvh2(&boxes, BvhBuildParams::fast_build(), &mut Default::default());
     // Neighbours in the tree are neighbours in space: a run of queries stays in the cache.
     tree.primitive_indices.par_chunks(256).for_each(|run| {
         for &i in run {

@@ -43,9 +43,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self {
-            self_intersections: true,
-        }
+        Self { self_intersections: true }
     }
 }
 
@@ -105,11 +103,7 @@ pub fn inspect(mesh: &TriMesh, options: &Options) -> Health {
     let parts = parts::parts_of(&welded, &topology.labels, topology.components);
     let pieces = parts::count(&parts);
     let when_closed = |n: usize| (topology.closed && sizes.wild == 0).then_some(n as u64);
-    let met = if options.self_intersections {
-        contact::contacts(&welded)
-    } else {
-        None
-    };
+    let met = if options.self_intersections { contact::contacts(&welded) } else { None };
     let mut health = Health {
         triangles: mesh.faces.len() as u64,
         vertices: topology.vertices as u64,
@@ -167,21 +161,13 @@ impl Sizes {
         let finite = mesh.points.iter().copied().filter(|p| p.is_finite());
         let bounds = Aabb::of(finite);
         let corner = |p: DVec3| {
-            if bounds.is_empty() {
-                [0.0; 3]
-            } else {
-                p.to_array()
-            }
+            if bounds.is_empty() { [0.0; 3] } else { p.to_array() }
         };
         let repeats = |f: &&[u32; 3]| f[0] == f[1] || f[1] == f[2] || f[2] == f[0];
         Self {
             area: areas.iter().sum(),
             bounds: [corner(bounds.min), corner(bounds.max)],
-            flat: mesh
-                .faces
-                .iter()
-                .filter(|f| repeats(f) || is_flat(corners(f)))
-                .count(),
+            flat: mesh.faces.iter().filter(|f| repeats(f) || is_flat(corners(f))).count(),
             collapsed: mesh.faces.iter().filter(repeats).count(),
             wild: mesh.points.iter().filter(|p| !p.is_finite()).count(),
         }
@@ -245,11 +231,7 @@ fn reasons(health: &Health, topology: &Topology, sizes: &Sizes, astray: usize) -
             "triangle is a duplicate",
             "triangles are duplicates",
         ),
-        (
-            contacts,
-            "triangle cuts or touches another",
-            "triangles cut or touch others",
-        ),
+        (contacts, "triangle cuts or touches another", "triangles cut or touch others"),
     ];
     let mut reasons: Vec<String> = counted
         .into_iter()

@@ -58,9 +58,7 @@ pub fn solid_pieces(mesh: &TriMesh) -> Pieces {
 /// a cavity that lies in no solid. Meaningful for closed meshes.
 pub fn drop_crumbs(mesh: &TriMesh, smallest_share: f64) -> (TriMesh, Crumbs) {
     let welded = weld(mesh);
-    let Topology {
-        labels, components, ..
-    } = topology(&welded);
+    let Topology { labels, components, .. } = topology(&welded);
     let parts = parts_of(&welded, &labels, components);
     let home = homes(&welded, &labels, &parts);
     let mut volumes = vec![0.0; parts.len()];
@@ -96,11 +94,7 @@ pub(super) fn count(parts: &[Part]) -> Pieces {
 
 pub(super) fn parts_of(mesh: &Welded, labels: &[u32], components: usize) -> Vec<Part> {
     let origin = Aabb::of(mesh.points.iter().copied()).centre();
-    let none = Part {
-        faces: 0,
-        volume_mm3: 0.0,
-        bounds: Aabb::EMPTY,
-    };
+    let none = Part { faces: 0, volume_mm3: 0.0, bounds: Aabb::EMPTY };
     let mut parts = vec![none; components];
     for (face, &label) in mesh.faces.iter().zip(labels) {
         let corners = face.map(|v| mesh.points[v as usize]);
@@ -115,9 +109,7 @@ pub(super) fn parts_of(mesh: &Welded, labels: &[u32], components: usize) -> Vec<
 
 /// The solid that each part belongs to: itself for a solid, the innermost one round a cavity.
 fn homes(mesh: &Welded, labels: &[u32], parts: &[Part]) -> Vec<Option<usize>> {
-    let mut solids: Vec<usize> = (0..parts.len())
-        .filter(|&i| parts[i].volume_mm3 > 0.0)
-        .collect();
+    let mut solids: Vec<usize> = (0..parts.len()).filter(|&i| parts[i].volume_mm3 > 0.0).collect();
     solids.sort_by(|&i, &j| parts[i].volume_mm3.total_cmp(&parts[j].volume_mm3));
     let mut faces = vec![Vec::new(); parts.len()];
     for (i, &label) in labels.iter().enumerate() {
@@ -155,11 +147,7 @@ fn winding(mesh: &Welded, faces: &[usize], p: DVec3) -> f64 {
 fn subset(mesh: &TriMesh, stays: impl Fn(usize) -> bool) -> TriMesh {
     let total = mesh.points.len();
     let valid = |f: &[u32; 3]| f.iter().all(|&v| (v as usize) < total);
-    let faces = mesh
-        .faces
-        .iter()
-        .enumerate()
-        .filter(|(i, f)| stays(*i) && valid(f));
+    let faces = mesh.faces.iter().enumerate().filter(|(i, f)| stays(*i) && valid(f));
     let kept: Vec<[u32; 3]> = faces.map(|(_, f)| *f).collect();
     let mut name = vec![u32::MAX; total];
     kept.iter().flatten().for_each(|&v| name[v as usize] = 0);
@@ -168,11 +156,5 @@ fn subset(mesh: &TriMesh, stays: impl Fn(usize) -> bool) -> TriMesh {
         *name = points.len() as u32;
         points.push(mesh.points[v]);
     }
-    TriMesh {
-        points,
-        faces: kept
-            .into_iter()
-            .map(|f| f.map(|v| name[v as usize]))
-            .collect(),
-    }
+    TriMesh { points, faces: kept.into_iter().map(|f| f.map(|v| name[v as usize])).collect() }
 }

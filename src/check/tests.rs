@@ -5,22 +5,10 @@ use std::f64::consts::{PI, TAU};
 /// A box from its corners.
 fn block(min: [f64; 3], max: [f64; 3]) -> TriMesh {
     let corners = Aabb::new(min.into(), max.into()).corners();
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let faces = quads
-        .iter()
-        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-        .collect();
-    TriMesh {
-        points: corners.to_vec(),
-        faces,
-    }
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    TriMesh { points: corners.to_vec(), faces }
 }
 
 /// A grid of `n` by `m` quads, both ways round, over a map of [0, 1)².
@@ -51,17 +39,8 @@ fn torus(n: u32) -> TriMesh {
 /// An octahedron, split `n` times and blown up to a sphere.
 fn sphere(n: u32) -> TriMesh {
     let mut mesh = TriMesh {
-        points: vec![
-            DVec3::X,
-            DVec3::Y,
-            DVec3::NEG_X,
-            DVec3::NEG_Y,
-            DVec3::Z,
-            DVec3::NEG_Z,
-        ],
-        faces: (0..4)
-            .flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]])
-            .collect(),
+        points: vec![DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z],
+        faces: (0..4).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]).collect(),
     };
     for _ in 0..n {
         let mut split = TriMesh::default();
@@ -97,24 +76,15 @@ fn look(mesh: &TriMesh) -> Health {
 #[track_caller]
 fn near(got: Option<f64>, want: f64, within: f64) {
     let got = got.expect("the figure can be had");
-    assert!(
-        (got - want).abs() <= within,
-        "got {got}, want {want} within {within}"
-    );
+    assert!((got - want).abs() <= within, "got {got}, want {want} within {within}");
 }
 
 #[test]
 fn a_block() {
     let h = look(&block([1.0, 2.0, 3.0], [3.0, 5.0, 7.0]));
     assert!(h.closed && h.manifold_edges && h.manifold_vertices && h.oriented && h.printable);
-    assert_eq!(
-        (h.triangles, h.vertices, h.components, h.genus),
-        (12, 8, 1, Some(0))
-    );
-    assert_eq!(
-        (h.self_intersections, h.floating_parts, h.cavities),
-        (Some(0), Some(0), Some(0))
-    );
+    assert_eq!((h.triangles, h.vertices, h.components, h.genus), (12, 8, 1, Some(0)));
+    assert_eq!((h.self_intersections, h.floating_parts, h.cavities), (Some(0), Some(0), Some(0)));
     near(h.volume_mm3, 24.0, 1e-12);
     near(Some(h.area_mm2), 52.0, 1e-12);
     assert_eq!(h.bbox_mm, [[1.0, 2.0, 3.0], [3.0, 5.0, 7.0]]);
@@ -130,10 +100,7 @@ fn sphere_and_torus_are_clean() {
     near(h.volume_mm3, 4.0 / 3.0 * PI, 4.0 * PI * 0.13 * 0.13 / 6.0);
 
     let h = look(&torus(64));
-    assert_eq!(
-        (h.genus, h.self_intersections, h.printable),
-        (Some(1), Some(0), true)
-    );
+    assert_eq!((h.genus, h.self_intersections, h.printable), (Some(1), Some(0), true));
     near(h.volume_mm3, 2.0 * PI * PI * 10.0 * 9.0, 20.0);
 }
 
@@ -142,10 +109,7 @@ fn genus_sums_over_components() {
     let mut far = torus(32);
     far.transform(&DAffine3::from_translation(DVec3::X * 100.0));
     let h = look(&both(&torus(32), &far));
-    assert_eq!(
-        (h.components, h.genus, h.floating_parts),
-        (2, Some(2), Some(1))
-    );
+    assert_eq!((h.components, h.genus, h.floating_parts), (2, Some(2), Some(1)));
 }
 
 #[test]
@@ -157,33 +121,21 @@ fn crossing_blocks_cut_each_other() {
     let met = intersecting_faces(&mesh).unwrap();
     assert_eq!(h.self_intersections, Some(met.len() as u64));
     let of_first = met.iter().filter(|&&i| i < 12).count();
-    assert!(
-        (3..=6).contains(&of_first) && met.len() == 2 * of_first,
-        "{met:?}"
-    );
+    assert!((3..=6).contains(&of_first) && met.len() == 2 * of_first, "{met:?}");
     assert!(h.reasons[0].contains("cut or touch"), "{:?}", h.reasons);
 }
 
 #[test]
 fn blocks_stacked_flush_touch() {
-    let mesh = both(
-        &block([0.0; 3], [3.0; 3]),
-        &block([1.0, 1.0, 3.0], [2.0, 2.0, 4.0]),
-    );
+    let mesh = both(&block([0.0; 3], [3.0; 3]), &block([1.0, 1.0, 3.0], [2.0, 2.0, 4.0]));
     let met = intersecting_faces(&mesh).unwrap();
-    assert!(
-        met.iter()
-            .all(|&i| mesh.area_vector(i as usize).normalize().z.abs() > -1.0)
-    );
+    assert!(met.iter().all(|&i| mesh.area_vector(i as usize).normalize().z.abs() > -1.0));
     assert!(met.contains(&2) && met.contains(&3) && met.contains(&12) && met.contains(&13));
 }
 
 #[test]
 fn blocks_at_one_corner_split_its_vertex() {
-    let h = look(&both(
-        &block([0.0; 3], [1.0; 3]),
-        &block([1.0; 3], [2.0; 3]),
-    ));
+    let h = look(&both(&block([0.0; 3], [1.0; 3]), &block([1.0; 3], [2.0; 3])));
     assert!(h.closed && h.manifold_edges && h.oriented && !h.manifold_vertices);
     assert_eq!((h.vertices, h.components, h.genus), (15, 2, None));
     assert_eq!(h.self_intersections, Some(0));
@@ -192,10 +144,7 @@ fn blocks_at_one_corner_split_its_vertex() {
 
 #[test]
 fn blocks_at_one_edge_crowd_it() {
-    let h = look(&both(
-        &block([0.0; 3], [1.0; 3]),
-        &block([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]),
-    ));
+    let h = look(&both(&block([0.0; 3], [1.0; 3]), &block([1.0, 1.0, 0.0], [2.0, 2.0, 1.0])));
     assert!(h.closed && !h.manifold_edges && !h.manifold_vertices && h.oriented);
     assert_eq!((h.components, h.genus), (1, None));
     assert_eq!(h.reasons, ["1 edge has more than two triangles"]);
@@ -215,10 +164,7 @@ fn open_and_torn() {
     mesh.faces.pop();
     let h = look(&mesh);
     assert!(!h.closed && !h.manifold_edges && h.manifold_vertices && h.oriented);
-    assert_eq!(
-        (h.open_edges, h.volume_mm3, h.genus, h.floating_parts),
-        (3, None, None, None)
-    );
+    assert_eq!((h.open_edges, h.volume_mm3, h.genus, h.floating_parts), (3, None, None, None));
     assert_eq!(h.reasons, ["3 edges are open"]);
 }
 
@@ -228,10 +174,7 @@ fn one_face_turned_over() {
     mesh.faces[0].swap(0, 1);
     let h = look(&mesh);
     assert!(!h.closed && h.manifold_edges && h.manifold_vertices && !h.oriented);
-    assert_eq!(
-        h.reasons,
-        ["3 edges have two triangles that disagree on the outside"]
-    );
+    assert_eq!(h.reasons, ["3 edges have two triangles that disagree on the outside"]);
 }
 
 #[test]
@@ -244,11 +187,7 @@ fn a_fold_through_itself() {
     });
     let h = look(&mesh);
     assert!(h.closed && h.manifold_edges && h.manifold_vertices && h.genus == Some(1));
-    assert!(
-        h.self_intersections.unwrap() > 24,
-        "{:?}",
-        h.self_intersections
-    );
+    assert!(h.self_intersections.unwrap() > 24, "{:?}", h.self_intersections);
 
     // A corner of a block pushed through the far side.
     let mut mesh = block([0.0; 3], [1.0; 3]);
@@ -264,20 +203,9 @@ fn degenerate_and_duplicate_triangles_are_named() {
     mesh.points.push(DVec3::new(0.5, 0.0, 0.0));
     mesh.faces.push([0, 8, 1]);
     let h = look(&mesh);
-    assert_eq!(
-        (h.degenerate_triangles, h.duplicate_triangles, h.vertices),
-        (2, 1, 9)
-    );
-    assert!(
-        h.reasons.contains(&"2 triangles have no area".to_owned()),
-        "{:?}",
-        h.reasons
-    );
-    assert!(
-        h.reasons.contains(&"1 triangle is a duplicate".to_owned()),
-        "{:?}",
-        h.reasons
-    );
+    assert_eq!((h.degenerate_triangles, h.duplicate_triangles, h.vertices), (2, 1, 9));
+    assert!(h.reasons.contains(&"2 triangles have no area".to_owned()), "{:?}", h.reasons);
+    assert!(h.reasons.contains(&"1 triangle is a duplicate".to_owned()), "{:?}", h.reasons);
     assert_eq!(h.self_intersections, Some(2));
 }
 
@@ -291,13 +219,7 @@ fn nothing_and_nonsense() {
     mesh.faces.push([0, 1, 99]);
     assert!(look(&mesh).reasons[0].contains("not there"));
     assert_eq!(drop_crumbs(&mesh, 0.5).0, mesh);
-    assert!(
-        !look(&TriMesh {
-            points: vec![],
-            faces: vec![[0, 1, 2]]
-        })
-        .printable
-    );
+    assert!(!look(&TriMesh { points: vec![], faces: vec![[0, 1, 2]] }).printable);
 
     for wild in [f64::NAN, f64::INFINITY, 1e300] {
         let mut mesh = block([0.0; 3], [1.0; 3]);
@@ -320,31 +242,16 @@ fn cavities_and_crumbs() {
     mesh.append(&inner(3.0, 3.5));
     mesh.append(&moved(inner(0.0, 0.5), 40.0));
     let h = look(&mesh);
-    assert_eq!(
-        (h.components, h.floating_parts, h.cavities),
-        (6, Some(3), Some(2))
-    );
-    assert_eq!(
-        solid_pieces(&mesh),
-        Pieces {
-            solids: 4,
-            cavities: 2
-        }
-    );
+    assert_eq!((h.components, h.floating_parts, h.cavities), (6, Some(3), Some(2)));
+    assert_eq!(solid_pieces(&mesh), Pieces { solids: 4, cavities: 2 });
     let (labels, all) = parts(&mesh);
-    assert_eq!(
-        (labels.len(), labels[0], labels[12], all.len()),
-        (72, 0, 1, 6)
-    );
+    assert_eq!((labels.len(), labels[0], labels[12], all.len()), (72, 0, 1, 6));
     near(Some(all[1].volume_mm3), -1.0, 1e-12);
     assert_eq!(all[2].bounds, Aabb::new(DVec3::ZERO, DVec3::splat(10.0)));
 
     let whole = 7.0 + (1000.0 - 64.0) + 0.125 + 0.125;
     let (kept, crumbs) = drop_crumbs(&mesh, 0.02);
-    assert_eq!(
-        (kept.faces.len(), kept.points.len(), crumbs.count),
-        (24, 16, 3)
-    );
+    assert_eq!((kept.faces.len(), kept.points.len(), crumbs.count), (24, 16, 3));
     near(Some(crumbs.volume_mm3), 7.25, 1e-9);
     near(Some(crumbs.share), 7.25 / whole, 1e-12);
     near(Some(kept.volume()), 936.0, 1e-9);
@@ -360,10 +267,7 @@ fn cavities_and_crumbs() {
 fn the_same_on_any_number_of_threads() {
     let mesh = both(&torus(64), &sphere(3));
     let on = |n| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(n)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
         pool.install(|| look(&mesh))
     };
     assert_eq!(on(1), on(2));

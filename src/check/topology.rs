@@ -62,10 +62,7 @@ pub(super) fn topology(mesh: &Welded) -> Topology {
     let mut corners = Forest::new(mesh.faces.len() * 3);
     let mut faces = Forest::new(mesh.faces.len());
     for edge in halves.chunk_by(|a, b| a.0 == b.0) {
-        let sum: i64 = edge
-            .iter()
-            .map(|h| if start(h.1) < end(h.1) { 1 } else { -1 })
-            .sum();
+        let sum: i64 = edge.iter().map(|h| if start(h.1) < end(h.1) { 1 } else { -1 }).sum();
         t.edges += 1;
         t.open_edges += usize::from(edge.len() == 1);
         t.crowded_edges += usize::from(edge.len() > 2);
@@ -91,24 +88,16 @@ pub(super) fn topology(mesh: &Welded) -> Topology {
 
 /// The next corner of the same face.
 fn following(corner: u64) -> u64 {
-    if corner % 3 == 2 {
-        corner - 2
-    } else {
-        corner + 1
-    }
+    if corner % 3 == 2 { corner - 2 } else { corner + 1 }
 }
 
 fn half_edges(faces: &[[u32; 3]]) -> Vec<HalfEdge> {
     let sides = |(i, f): (usize, &[u32; 3])| {
-        [(f[0], f[1]), (f[1], f[2]), (f[2], f[0])]
-            .into_iter()
-            .enumerate()
-            .map(move |(k, (a, b))| {
-                (
-                    u64::from(a.min(b)) << 32 | u64::from(a.max(b)),
-                    3 * i as u64 + k as u64,
-                )
-            })
+        [(f[0], f[1]), (f[1], f[2]), (f[2], f[0])].into_iter().enumerate().map(
+            move |(k, (a, b))| {
+                (u64::from(a.min(b)) << 32 | u64::from(a.max(b)), 3 * i as u64 + k as u64)
+            },
+        )
     };
     let mut halves: Vec<HalfEdge> = faces
         .par_iter()
@@ -141,9 +130,7 @@ struct Forest {
 
 impl Forest {
     fn new(len: usize) -> Self {
-        Self {
-            parent: (0..len as u32).collect(),
-        }
+        Self { parent: (0..len as u32).collect() }
     }
 
     fn root(&mut self, mut i: usize) -> usize {

@@ -22,9 +22,7 @@ impl Triangle {
         let mut axes = [0, 1, 2];
         axes.sort_by(|&i, &j| normal[j as usize].total_cmp(&normal[i as usize]));
         let keeps_area = |&axis: &u8| turn(at.map(|p| flat(p, axis))) != 0;
-        axes.into_iter()
-            .find(keeps_area)
-            .map(|axis| Self { at, names, axis })
+        axes.into_iter().find(keeps_area).map(|axis| Self { at, names, axis })
     }
 
     /// Turned so that corner `k` comes first.
@@ -125,16 +123,8 @@ fn folded(a: &Triangle, b: &Triangle, one: (usize, usize), two: (usize, usize)) 
 fn meets_segment_flat(triangle: [DVec2; 3], p: DVec2, q: DVec2) -> bool {
     let [a, b, c] = triangle;
     let facing = turn(triangle);
-    let holds = |x| {
-        [[a, b, x], [b, c, x], [c, a, x]]
-            .iter()
-            .all(|&t| turn(t) * facing >= 0)
-    };
-    holds(p)
-        || holds(q)
-        || [(a, b), (b, c), (c, a)]
-            .iter()
-            .any(|&(s, e)| cross(s, e, p, q))
+    let holds = |x| [[a, b, x], [b, c, x], [c, a, x]].iter().all(|&t| turn(t) * facing >= 0);
+    holds(p) || holds(q) || [(a, b), (b, c), (c, a)].iter().any(|&(s, e)| cross(s, e, p, q))
 }
 
 /// Whether segments ab and pq have a point in common, ends included.
@@ -159,11 +149,8 @@ fn flat(p: DVec3, axis: u8) -> DVec2 {
 
 /// Sign of the side of a triangle's plane that a point lies on.
 fn side(plane: [DVec3; 3], p: DVec3) -> i8 {
-    let [a, b, c, d] = [plane[0], plane[1], plane[2], p].map(|p| Coord3D {
-        x: p.x,
-        y: p.y,
-        z: p.z,
-    });
+    let [a, b, c, d] =
+        [plane[0], plane[1], plane[2], p].map(|p| Coord3D { x: p.x, y: p.y, z: p.z });
     sign(robust::orient3d(a, b, c, d))
 }
 
@@ -199,39 +186,15 @@ mod tests {
         let cases = [
             ([[2, 2, -1], [2, 2, 5], [3, 4, 5]], true, "cuts through"),
             ([[2, 2, 0], [2, 2, 5], [3, 4, 5]], true, "stands on it"),
-            (
-                [[0, 0, 0], [-2, 2, 5], [3, 4, 5]],
-                true,
-                "stands on its corner",
-            ),
+            ([[0, 0, 0], [-2, 2, 5], [3, 4, 5]], true, "stands on its corner"),
             ([[5, 5, 0], [9, 9, 5], [9, 9, 0]], true, "touches its edge"),
             ([[2, 2, 1], [2, 2, 5], [3, 4, 5]], false, "hovers"),
             ([[9, 9, -1], [9, 9, 5], [9, 12, 5]], false, "passes beside"),
-            (
-                [[1, 1, 0], [3, 1, 0], [1, 3, 0]],
-                true,
-                "lies inside, same plane",
-            ),
-            (
-                [[-9, -9, 0], [90, -9, 0], [-9, 90, 0]],
-                true,
-                "lies round it, same plane",
-            ),
-            (
-                [[-1, 4, 0], [12, 4, 0], [12, 5, 0]],
-                true,
-                "crosses it, same plane",
-            ),
-            (
-                [[10, 0, 0], [20, 0, 0], [10, 9, 0]],
-                true,
-                "touches a corner, same plane",
-            ),
-            (
-                [[6, 5, 0], [20, 0, 0], [10, 9, 0]],
-                false,
-                "beside it, same plane",
-            ),
+            ([[1, 1, 0], [3, 1, 0], [1, 3, 0]], true, "lies inside, same plane"),
+            ([[-9, -9, 0], [90, -9, 0], [-9, 90, 0]], true, "lies round it, same plane"),
+            ([[-1, 4, 0], [12, 4, 0], [12, 5, 0]], true, "crosses it, same plane"),
+            ([[10, 0, 0], [20, 0, 0], [10, 9, 0]], true, "touches a corner, same plane"),
+            ([[6, 5, 0], [20, 0, 0], [10, 9, 0]], false, "beside it, same plane"),
         ];
         for (at, want, why) in cases {
             let t = tri(at, APART);
@@ -243,60 +206,15 @@ mod tests {
     #[test]
     fn neighbours() {
         let cases = [
-            (
-                [[0, 0, 0], [0, -5, 2], [-5, 0, 2]],
-                [0, 4, 5],
-                false,
-                "one vertex, apart",
-            ),
-            (
-                [[0, 0, 0], [4, 4, 2], [4, 4, -2]],
-                [0, 4, 5],
-                true,
-                "one vertex, edge through",
-            ),
-            (
-                [[0, 0, 0], [40, 39, 1], [39, 40, -1]],
-                [0, 4, 5],
-                true,
-                "one vertex, edge outside",
-            ),
-            (
-                [[0, 0, 0], [-5, 0, 0], [0, -5, 0]],
-                [0, 4, 5],
-                false,
-                "one vertex, same plane",
-            ),
-            (
-                [[0, 0, 0], [5, 1, 0], [1, 5, 0]],
-                [0, 4, 5],
-                true,
-                "one vertex, overlapping",
-            ),
-            (
-                [[0, 0, 0], [5, 0, 0], [5, -5, 0]],
-                [0, 4, 5],
-                true,
-                "along part of an edge",
-            ),
-            (
-                [[0, 0, 0], [10, 0, 0], [0, 0, 3]],
-                [0, 1, 5],
-                false,
-                "one edge, upright",
-            ),
-            (
-                [[10, 0, 0], [0, 0, 0], [5, -5, 0]],
-                [1, 0, 5],
-                false,
-                "one edge, flat",
-            ),
-            (
-                [[10, 0, 0], [0, 0, 0], [5, 5, 0]],
-                [1, 0, 5],
-                true,
-                "one edge, folded over",
-            ),
+            ([[0, 0, 0], [0, -5, 2], [-5, 0, 2]], [0, 4, 5], false, "one vertex, apart"),
+            ([[0, 0, 0], [4, 4, 2], [4, 4, -2]], [0, 4, 5], true, "one vertex, edge through"),
+            ([[0, 0, 0], [40, 39, 1], [39, 40, -1]], [0, 4, 5], true, "one vertex, edge outside"),
+            ([[0, 0, 0], [-5, 0, 0], [0, -5, 0]], [0, 4, 5], false, "one vertex, same plane"),
+            ([[0, 0, 0], [5, 1, 0], [1, 5, 0]], [0, 4, 5], true, "one vertex, overlapping"),
+            ([[0, 0, 0], [5, 0, 0], [5, -5, 0]], [0, 4, 5], true, "along part of an edge"),
+            ([[0, 0, 0], [10, 0, 0], [0, 0, 3]], [0, 1, 5], false, "one edge, upright"),
+            ([[10, 0, 0], [0, 0, 0], [5, -5, 0]], [1, 0, 5], false, "one edge, flat"),
+            ([[10, 0, 0], [0, 0, 0], [5, 5, 0]], [1, 0, 5], true, "one edge, folded over"),
             (FLOOR, [0, 1, 2], true, "the same triangle twice"),
         ];
         for (at, names, want, why) in cases {

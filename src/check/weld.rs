@@ -53,17 +53,9 @@ pub(super) fn weld(mesh: &TriMesh) -> Welded {
         points.push(DVec3::ZERO);
     }
     let rename = |f: &[u32; 3]| {
-        if missing(f) {
-            [0; 3]
-        } else {
-            f.map(|v| name[v as usize])
-        }
+        if missing(f) { [0; 3] } else { f.map(|v| name[v as usize]) }
     };
-    Welded {
-        points,
-        faces: mesh.faces.par_iter().map(rename).collect(),
-        astray,
-    }
+    Welded { points, faces: mesh.faces.par_iter().map(rename).collect(), astray }
 }
 
 #[cfg(test)]

@@ -97,14 +97,9 @@ pub fn assumed(file: &Path, loaded: &Loaded) -> String {
 impl Check {
     /// Checks all of them, then fails for the first that is bad.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
-        for (option, mm) in [
-            ("--print-height", self.print_height),
-            ("--nozzle", self.nozzle),
-        ] {
+        for (option, mm) in [("--print-height", self.print_height), ("--nozzle", self.nozzle)] {
             if mm.is_some_and(|mm| !(mm > 0.0 && mm.is_finite())) {
-                return Err(Failure::usage(format!(
-                    "{option}: expected millimetres, more than 0"
-                )));
+                return Err(Failure::usage(format!("{option}: expected millimetres, more than 0")));
             }
         }
         let mut entries = self.reading.entries(&self.meshes)?;
@@ -143,11 +138,7 @@ impl Check {
         watch.say(&assumed(file, &loaded));
         watch.detail(&format!("  {}", loaded.found.summary().replace('\n', "; ")));
         let health = inspect(&loaded.mesh, &Options::default());
-        let told = if self.json {
-            json_line(file, &health)
-        } else {
-            words(file, &health)
-        };
+        let told = if self.json { json_line(file, &health) } else { words(file, &health) };
         watch.put(&told)?;
         Ok(health.printable)
     }
@@ -164,22 +155,13 @@ fn json_line(file: &Path, health: &Health) -> String {
 }
 
 fn words(file: &Path, h: &Health) -> String {
-    let verdict = if h.printable {
-        "printable"
-    } else {
-        "NOT printable"
-    };
+    let verdict = if h.printable { "printable" } else { "NOT printable" };
     let yes = |b: bool| if b { "yes" } else { "no" };
     let known = |n: Option<u64>| n.map_or_else(|| "unknown".to_owned(), |n| n.to_string());
-    let size: Vec<String> = (0..3)
-        .map(|i| format!("{:.1}", h.bbox_mm[1][i] - h.bbox_mm[0][i]))
-        .collect();
-    let volume = h
-        .volume_mm3
-        .map_or_else(|| "unknown".to_owned(), |v| format!("{:.1}", v / 1e3));
-    let genus = h
-        .genus
-        .map_or_else(|| "unknown".to_owned(), |g| g.to_string());
+    let size: Vec<String> =
+        (0..3).map(|i| format!("{:.1}", h.bbox_mm[1][i] - h.bbox_mm[0][i])).collect();
+    let volume = h.volume_mm3.map_or_else(|| "unknown".to_owned(), |v| format!("{:.1}", v / 1e3));
+    let genus = h.genus.map_or_else(|| "unknown".to_owned(), |g| g.to_string());
     let mut text = format!(
         "{}: {verdict}\n  triangles {}, vertices {}\n  closed {}, manifold edges {}, manifold \
          vertices {}, oriented {}\n  self-intersections {}\n  components {}, floating parts {}, \

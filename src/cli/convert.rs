@@ -46,11 +46,8 @@ impl Convert {
     /// Converts.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
         let start = Instant::now();
-        let field_out = self
-            .output
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("npy"))
-            && !self.shells;
+        let field_out =
+            self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy")) && !self.shells;
         self.check_output(field_out)?;
         let single = self.open(watch)?;
         if self.shells {
@@ -64,10 +61,7 @@ impl Convert {
         if self.making.dry_run {
             return Ok(());
         }
-        let (lattice, inputs) = (
-            single.lattice,
-            single.input().cloned().into_iter().collect(),
-        );
+        let (lattice, inputs) = (single.lattice, single.input().cloned().into_iter().collect());
         let mut notes = vec![single.note().to_owned()];
         let (field, found) = single.field(watch).map_err(plain)?;
         found.iter().for_each(|n| watch.say(unnamed(n)));
@@ -91,9 +85,7 @@ impl Convert {
     /// Refuses options and outputs that cannot be, before any work.
     fn check_output(&self, field_out: bool) -> Result<(), Failure> {
         if !(0.0..1.0).contains(&self.crumbs) {
-            return Err(Failure::usage(
-                "--crumbs: expected a share of the volume, 0 to below 1",
-            ));
+            return Err(Failure::usage("--crumbs: expected a share of the volume, 0 to below 1"));
         }
         match field_out {
             _ if self.making.dry_run => Ok(()),
@@ -171,12 +163,7 @@ impl Convert {
         }
         job::check(watch)?;
         write(&self.output, &mesh, "", self.making.force)?;
-        let health = inspect(
-            &mesh,
-            &Options {
-                self_intersections: false,
-            },
-        );
+        let health = inspect(&mesh, &Options { self_intersections: false });
         watch.say(&format!(
             "{}: {} triangles as they are, {} shells, closed {}",
             self.output.display(),
@@ -204,21 +191,10 @@ pub fn beside(output: &Path) -> PathBuf {
 /// An error without the key of a recipe that the user never wrote.
 pub fn plain(e: SceneError) -> Failure {
     match e {
-        SceneError::Bad(RecipeError {
-            file,
-            line,
-            at,
-            why,
-        }) => {
+        SceneError::Bad(RecipeError { file, line, at, why }) => {
             let invented = file.as_os_str().is_empty() && at.starts_with("shapes.");
             let at = if invented { String::new() } else { at };
-            RecipeError {
-                file,
-                line,
-                at,
-                why,
-            }
-            .into()
+            RecipeError { file, line, at, why }.into()
         }
         SceneError::Cancelled(c) => c.into(),
     }
@@ -230,14 +206,6 @@ pub fn names(output: &str, picture: Option<String>) -> Names {
     let report = beside(Path::new(&bare)).display().to_string();
     let folder = PathBuf::new();
     // `hybrid-{t}.stl` has its report in `hybrid.run.json`
-    let report = report
-        .replace("-.run.json", ".run.json")
-        .replace("_.run.json", ".run.json");
-    Names {
-        folder,
-        mesh: output.to_owned(),
-        picture,
-        report,
-        unnamed: String::new(),
-    }
+    let report = report.replace("-.run.json", ".run.json").replace("_.run.json", ".run.json");
+    Names { folder, mesh: output.to_owned(), picture, report, unnamed: String::new() }
 }

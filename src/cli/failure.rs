@@ -33,10 +33,7 @@ impl Failure {
 
     /// With this code and message.
     pub fn new(code: u8, message: impl Into<String>) -> Self {
-        Self {
-            code,
-            message: message.into(),
-        }
+        Self { code, message: message.into() }
     }
 
     /// A usage error.
@@ -60,10 +57,7 @@ impl Failure {
 
 impl From<Cancelled> for Failure {
     fn from(_: Cancelled) -> Self {
-        Self::new(
-            Self::INTERRUPTED,
-            "interrupted; nothing was left half written",
-        )
+        Self::new(Self::INTERRUPTED, "interrupted; nothing was left half written")
     }
 }
 

@@ -57,11 +57,7 @@ impl Reading {
             }
             entry
         };
-        Ok(files
-            .iter()
-            .enumerate()
-            .map(|(i, f)| entry(i, f.as_ref()))
-            .collect())
+        Ok(files.iter().enumerate().map(|(i, f)| entry(i, f.as_ref())).collect())
     }
 }
 
@@ -86,11 +82,7 @@ fn each<T, U: Clone>(
 
 /// A word of the recipe; `auto` leaves it open.
 fn words<T: serde::de::DeserializeOwned>(text: &String) -> Result<Option<T>, String> {
-    if text == "auto" {
-        Ok(None)
-    } else {
-        word(text).map(Some)
-    }
+    if text == "auto" { Ok(None) } else { word(text).map(Some) }
 }
 
 /// A length in mm; 0 leaves it open.
@@ -123,9 +115,7 @@ pub struct Fineness {
 /// A size in bytes: `800000`, `500M`, `1.5G`, `2GiB`; K, M and G are powers of 1000, KiB of 1024.
 pub fn size(text: &str) -> Result<u64, String> {
     let bad = || format!("got `{text}`; expected a size such as 500M, 2G or 2GiB");
-    let digits = text
-        .find(|c: char| !c.is_ascii_digit() && c != '.')
-        .unwrap_or(text.len());
+    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(digits);
     let factor = match unit.trim().to_ascii_lowercase().as_str() {
         "" | "b" => 1.0,
@@ -166,18 +156,9 @@ mod tests {
         let shapes = reading(&["y", "auto"]).shapes(&files).unwrap();
         assert_eq!((shapes[0].up, shapes[1].up), (Some(UpAxis::Y), None));
         assert!(shapes[1].solid.is_some() && shapes[0].mesh.is_some());
-        assert_eq!(
-            reading(&["z"]).shapes(&files).unwrap()[1].up,
-            Some(UpAxis::Z)
-        );
+        assert_eq!(reading(&["z"]).shapes(&files).unwrap()[1].up, Some(UpAxis::Z));
         let e = reading(&["y", "z", "y"]).shapes(&files).unwrap_err();
         assert!(e.code == Failure::USAGE && e.message.contains("3 values for 2 inputs"));
-        assert!(
-            reading(&["x"])
-                .shapes(&files)
-                .unwrap_err()
-                .message
-                .contains("known: y, z")
-        );
+        assert!(reading(&["x"]).shapes(&files).unwrap_err().message.contains("known: y, z"));
     }
 }

@@ -96,9 +96,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     if let Some(n) = cli.common.threads {
         // the pool is made here first, so this cannot fail
-        let _ = rayon::ThreadPoolBuilder::new()
-            .num_threads(n as usize)
-            .build_global();
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(n as usize).build_global();
     }
     let watch = Watch::new(&cli.common);
     let done = match cli.command {

@@ -111,17 +111,12 @@ impl Morph {
             return Err(Failure::usage("-t is for two meshes; more need --weights"));
         }
         let names = names(self.inputs.len());
-        let mut shapes: BTreeMap<String, ShapeEntry> = names
-            .iter()
-            .cloned()
-            .zip(self.reading.shapes(&self.inputs)?)
-            .collect();
+        let mut shapes: BTreeMap<String, ShapeEntry> =
+            names.iter().cloned().zip(self.reading.shapes(&self.inputs)?).collect();
         if self.align == Align::Box {
             for name in &names[1..] {
                 if let Some(shape) = shapes.get_mut(name) {
-                    shape.place = PlainOr::Table(PlaceLike {
-                        like: names[0].clone(),
-                    });
+                    shape.place = PlainOr::Table(PlaceLike { like: names[0].clone() });
                 }
             }
         }
@@ -153,9 +148,7 @@ impl Morph {
             },
             ..Recipe::default()
         };
-        recipe
-            .validate()
-            .map_err(|p| Failure::usage(p.to_string()))?;
+        recipe.validate().map_err(|p| Failure::usage(p.to_string()))?;
         Ok(recipe)
     }
 
@@ -165,28 +158,15 @@ impl Morph {
         }
         if self.weights.len() != names.len() {
             let (got, of) = (self.weights.len(), names.len());
-            return Err(Failure::usage(format!(
-                "--weights: {got} weights for {of} meshes"
-            )));
+            return Err(Failure::usage(format!("--weights: {got} weights for {of} meshes")));
         }
-        let row = names
-            .iter()
-            .cloned()
-            .zip(self.weights.iter().copied())
-            .collect();
+        let row = names.iter().cloned().zip(self.weights.iter().copied()).collect();
         Ok(BTreeMap::from([("default".to_owned(), row)]))
     }
 }
 
 /// `a`, `b`, ... `z`, then `s27` and on.
 fn names(count: usize) -> Vec<String> {
-    let letter = |i: usize| {
-        u8::try_from(i)
-            .ok()
-            .filter(|i| *i < 26)
-            .map(|i| (b'a' + i) as char)
-    };
-    (0..count)
-        .map(|i| letter(i).map_or_else(|| format!("s{}", i + 1), String::from))
-        .collect()
+    let letter = |i: usize| u8::try_from(i).ok().filter(|i| *i < 26).map(|i| (b'a' + i) as char);
+    (0..count).map(|i| letter(i).map_or_else(|| format!("s{}", i + 1), String::from)).collect()
 }

@@ -41,23 +41,14 @@ pub fn write(
     watch: &Watch,
 ) -> Result<(), Failure> {
     if lattice.samples() > MOST {
-        let why = format!(
-            "{} samples are more than {MOST}; use larger cells",
-            lattice.samples()
-        );
+        let why = format!("{} samples are more than {MOST}; use larger cells", lattice.samples());
         return Err(Failure::new(Failure::LIMIT, why));
     }
     watch.stage("sample");
     let fail = |e: std::io::Error| {
-        Failure::new(
-            Failure::FAILED,
-            format!("{}: cannot be written: {e}", path.display()),
-        )
+        Failure::new(Failure::FAILED, format!("{}: cannot be written: {e}", path.display()))
     };
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     // readable by others, as any file a program makes; the umask still has its say
     #[cfg(unix)]
@@ -75,11 +66,7 @@ pub fn write(
         }
     }
     let file = out.into_inner().map_err(|e| fail(e.into_error()))?;
-    let placed = if force {
-        file.persist(path)
-    } else {
-        file.persist_noclobber(path)
-    };
+    let placed = if force { file.persist(path) } else { file.persist_noclobber(path) };
     placed.map_err(|e| fail(e.error))?;
     let about = serde_json::json!({
         "origin_mm": lattice.origin.to_array(),
@@ -98,13 +85,10 @@ pub fn write(
 fn layer(field: &dyn Field, lattice: &Lattice, k: u32, values: &mut [f64]) {
     use rayon::prelude::*;
     let nx = lattice.size[0];
-    values
-        .par_chunks_mut(nx as usize)
-        .enumerate()
-        .for_each(|(j, row)| {
-            let at: Vec<DVec3> = (0..nx).map(|i| lattice.point(i, j as u32, k)).collect();
-            field.values(&at, row);
-        });
+    values.par_chunks_mut(nx as usize).enumerate().for_each(|(j, row)| {
+        let at: Vec<DVec3> = (0..nx).map(|i| lattice.point(i, j as u32, k)).collect();
+        field.values(&at, row);
+    });
 }
 
 /// Version 1.0 of the format: magic, length, a Python literal padded to 64 bytes.

@@ -41,9 +41,8 @@ fn view(text: &str) -> Result<View, String> {
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
-    let sides = text
-        .split_once(['x', 'X'])
-        .and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    let sides =
+        text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     sides
         .filter(|s: &[u32; 2]| s.iter().all(|n| (1..=LARGEST).contains(n)))
         .ok_or_else(|| format!("got `{text}`; expected WIDTHxHEIGHT in pixels, 1 to {LARGEST}"))
@@ -62,11 +61,7 @@ fn color(text: &str) -> Result<[u8; 3], String> {
 impl Picture {
     /// Draws.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
-        if !self
-            .output
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("png"))
-        {
+        if !self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
             let why = "pictures are PNG; give a name that ends in .png";
             return Err(Failure::usage(format!("{}: {why}", self.output.display())));
         }
@@ -82,11 +77,7 @@ impl Picture {
             meshes.push(loaded.mesh);
         }
         watch.stage("picture");
-        let mut style = Style {
-            size: self.size,
-            view: self.view,
-            ..Style::default()
-        };
+        let mut style = Style { size: self.size, view: self.view, ..Style::default() };
         style.color = self.color.unwrap_or(style.color);
         let image = match meshes.as_slice() {
             [one] => render(one, &style)?,
@@ -100,24 +91,11 @@ impl Picture {
     fn sheet(&self, meshes: &[TriMesh], style: &Style) -> Result<Image, PictureError> {
         let mut cells = Vec::with_capacity(meshes.len());
         for (mesh, file) in meshes.iter().zip(&self.meshes) {
-            let caption = file
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned();
-            cells.push(Cell {
-                image: Some(render(mesh, style)?),
-                caption,
-            });
+            let caption = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            cells.push(Cell { image: Some(render(mesh, style)?), caption });
         }
         // a sheet about as wide as it is high
         let columns = (meshes.len() as f64).sqrt().ceil() as usize;
-        sheet(
-            &cells,
-            &Layout {
-                columns,
-                ..Layout::default()
-            },
-        )
+        sheet(&cells, &Layout { columns, ..Layout::default() })
     }
 }

@@ -57,17 +57,7 @@ impl Run {
         let names = self.names(&recipe, &source)?;
         let beside = self.recipe.parent().unwrap_or(Path::new(""));
         let file = Some(self.recipe.display().to_string());
-        steps::make(
-            Task {
-                recipe,
-                source,
-                beside,
-                names,
-                file,
-            },
-            &self.making,
-            watch,
-        )
+        steps::make(Task { recipe, source, beside, names, file }, &self.making, watch)
     }
 
     /// What the command line overrides.
@@ -80,18 +70,13 @@ impl Run {
         if !self.t.is_empty() {
             let t = Times(self.t.iter().flat_map(|t| t.0.iter().copied()).collect());
             recipe.morph.t = Some(t.clone());
-            recipe
-                .hybrids
-                .iter_mut()
-                .for_each(|h| h.t = Some(t.clone()));
+            recipe.hybrids.iter_mut().for_each(|h| h.t = Some(t.clone()));
         }
         for name in &self.only {
             if !recipe.hybrids.iter().any(|h| h.name == *name) {
                 let known = recipe.hybrids.iter().map(|h| h.name.as_str());
                 let hint = fieldgraft::recipe::did_you_mean(name, known);
-                return Err(Failure::usage(format!(
-                    "--only: no hybrid is called `{name}`{hint}"
-                )));
+                return Err(Failure::usage(format!("--only: no hybrid is called `{name}`{hint}")));
             }
         }
         if !self.only.is_empty() {
@@ -103,21 +88,15 @@ impl Run {
     /// Where the results go.
     fn names(&self, recipe: &Recipe, source: &Source) -> Result<Names, Failure> {
         let hybrids = !recipe.hybrids.is_empty();
-        let several = recipe
-            .variants()
-            .iter()
-            .any(|(_, v)| v.t.as_ref().is_some_and(|t| t.0.len() > 1));
+        let several =
+            recipe.variants().iter().any(|(_, v)| v.t.as_ref().is_some_and(|t| t.0.len() > 1));
         let default = match (hybrids, several) {
             (true, true) => "{name}-{t}.stl",
             (true, false) => "{name}.stl",
             (false, true) => "hybrid-{t}.stl",
             (false, false) => "hybrid.stl",
         };
-        let mesh = recipe
-            .output
-            .mesh
-            .clone()
-            .unwrap_or_else(|| default.to_owned());
+        let mesh = recipe.output.mesh.clone().unwrap_or_else(|| default.to_owned());
         let picture = recipe.output.picture.clone();
         for (key, name) in [("mesh", Some(&mesh)), ("picture", picture.as_ref())] {
             if name.is_some_and(|n| !stays_inside(n)) {
@@ -126,11 +105,7 @@ impl Run {
                 return Err(source.locate(problem).into());
             }
         }
-        let unnamed = if recipe.name.is_empty() {
-            "hybrid"
-        } else {
-            &recipe.name
-        };
+        let unnamed = if recipe.name.is_empty() { "hybrid" } else { &recipe.name };
         Ok(Names {
             folder: self.output.clone().unwrap_or_default(),
             mesh,
@@ -143,9 +118,7 @@ impl Run {
 
 /// Whether a recipe's file name stays in the folder it is put into.
 fn stays_inside(name: &str) -> bool {
-    Path::new(name)
-        .components()
-        .all(|c| matches!(c, Component::Normal(_) | Component::CurDir))
+    Path::new(name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir))
 }
 
 /// Reads the recipe, with keys changed where asked.
@@ -172,9 +145,8 @@ fn parse(text: &str, file: &Path, set: &[String]) -> Result<(Recipe, Source), Re
 
 /// Sets `key.path[0].name=value` in a tree; the value is TOML, or else a plain word.
 fn change_key(tree: &mut toml::Table, change: &str) -> Result<(), String> {
-    let (path, value) = change
-        .split_once('=')
-        .ok_or_else(|| format!("got `{change}`; expected key=value"))?;
+    let (path, value) =
+        change.split_once('=').ok_or_else(|| format!("got `{change}`; expected key=value"))?;
     let value = match format!("v = {value}").parse::<toml::Table>() {
         Ok(mut t) if t.len() == 1 => t.remove("v").unwrap_or(toml::Value::Boolean(false)),
         _ => toml::Value::String(value.to_owned()),
@@ -184,9 +156,7 @@ fn change_key(tree: &mut toml::Table, change: &str) -> Result<(), String> {
     let mut at = tree;
     for step in above {
         let (name, index) = indexed(step)?;
-        let here = at
-            .entry(name)
-            .or_insert_with(|| toml::Value::Table(toml::Table::new()));
+        let here = at.entry(name).or_insert_with(|| toml::Value::Table(toml::Table::new()));
         let here = match index {
             None => here,
             Some(i) => here
@@ -194,9 +164,7 @@ fn change_key(tree: &mut toml::Table, change: &str) -> Result<(), String> {
                 .and_then(|a| a.get_mut(i))
                 .ok_or_else(|| format!("{path}: there is no `{step}`"))?,
         };
-        at = here
-            .as_table_mut()
-            .ok_or_else(|| format!("{path}: `{step}` is no table"))?;
+        at = here.as_table_mut().ok_or_else(|| format!("{path}: `{step}` is no table"))?;
     }
     at.insert((*last).to_owned(), value);
     Ok(())
@@ -241,21 +209,15 @@ mod tests {
 
     #[test]
     fn keys_are_changed_in_place() {
-        let mut tree: toml::Table = "[grid]\nresolution = 256\n[[features]]\nname = \"seat\"\n"
-            .parse()
-            .unwrap();
+        let mut tree: toml::Table =
+            "[grid]\nresolution = 256\n[[features]]\nname = \"seat\"\n".parse().unwrap();
         change_key(&mut tree, "grid.resolution=64").unwrap();
         change_key(&mut tree, "morph.method=linear").unwrap();
         change_key(&mut tree, "features[0].morph.t=\"t^2\"").unwrap();
         assert_eq!(tree["grid"]["resolution"].as_integer(), Some(64));
         assert_eq!(tree["morph"]["method"].as_str(), Some("linear"));
         assert_eq!(tree["features"][0]["morph"]["t"].as_str(), Some("t^2"));
-        for bad in [
-            "grid",
-            "features[1].name=x",
-            "features[x].name=x",
-            "grid.resolution.a=1",
-        ] {
+        for bad in ["grid", "features[1].name=x", "features[x].name=x", "grid.resolution.a=1"] {
             assert!(change_key(&mut tree, bad).is_err(), "{bad}");
         }
     }

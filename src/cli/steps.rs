@@ -33,13 +33,7 @@ pub struct Task<'a> {
 /// Makes everything, or says how large it would be.
 pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failure> {
     let start = Instant::now();
-    let Task {
-        recipe,
-        source,
-        beside,
-        names,
-        file,
-    } = work;
+    let Task { recipe, source, beside, names, file } = work;
     let frames = frames(&recipe);
     if !making.dry_run {
         check_outputs(&names, &frames, making.force)?;
@@ -78,10 +72,7 @@ pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failur
     let seconds = start.elapsed().as_secs_f64();
     for s in &scene.shapes {
         let [field, samples] = s.seconds;
-        watch.detail(&format!(
-            "{}: field {field:.2} s, samples {samples:.2} s",
-            s.name
-        ));
+        watch.detail(&format!("{}: field {field:.2} s, samples {samples:.2} s", s.name));
     }
     let report = Report {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -106,9 +97,7 @@ fn check_outputs(names: &Names, frames: &[(String, f64)], force: bool) -> Result
     names.check(frames, force)?;
     for (hybrid, t) in frames {
         let path = names.mesh(hybrid, *t);
-        let there = path
-            .parent()
-            .is_none_or(|p| p.as_os_str().is_empty() || p.is_dir());
+        let there = path.parent().is_none_or(|p| p.as_os_str().is_empty() || p.is_dir());
         match path.file_name() {
             // a folder still to be made holds nothing; only the name can be wrong
             Some(name) if !there => check_output(Path::new(name), true)?,
@@ -120,10 +109,7 @@ fn check_outputs(names: &Names, frames: &[(String, f64)], force: bool) -> Result
 
 /// What the command line said.
 pub fn arguments() -> Vec<String> {
-    std::env::args_os()
-        .skip(1)
-        .map(|a| a.to_string_lossy().into_owned())
-        .collect()
+    std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()).collect()
 }
 
 /// Prints the report and judges it.
@@ -132,24 +118,13 @@ pub fn finish(report: &Report, making: &Making, watch: &Watch) -> Result<(), Fai
         watch.put(&report.to_json())?;
     }
     if let Some(mb) = report.peak_memory_mb {
-        watch.detail(&format!(
-            "{:.2} s, peak memory {mb:.0} MB",
-            report.seconds_total
-        ));
+        watch.detail(&format!("{:.2} s, peak memory {mb:.0} MB", report.seconds_total));
     }
     let failed = report.frames.iter().filter(|f| f.error.is_some()).count();
     if failed > 0 {
         let of = report.frames.len();
-        let why = report
-            .frames
-            .iter()
-            .find_map(|f| f.error.clone())
-            .unwrap_or_default();
-        let why = if of == 1 {
-            why
-        } else {
-            format!("{failed} of {of} frames failed: {why}")
-        };
+        let why = report.frames.iter().find_map(|f| f.error.clone()).unwrap_or_default();
+        let why = if of == 1 { why } else { format!("{failed} of {of} frames failed: {why}") };
         return Err(Failure::new(Failure::FAILED, why));
     }
     if making.strict && !report.printable() {
@@ -167,25 +142,13 @@ pub fn tell(f: &FrameReport, watch: &Watch) {
         format!("{} (t {})", f.hybrid, run::time_word(f.t))
     };
     let (Some(health), None) = (&f.health, &f.error) else {
-        watch.say(&format!(
-            "{what}: {}",
-            f.error.as_deref().unwrap_or("no mesh")
-        ));
+        watch.say(&format!("{what}: {}", f.error.as_deref().unwrap_or("no mesh")));
         return;
     };
     let mut parts = vec![format!("{} triangles", health.triangles)];
-    parts.extend(f.pieces.map(|n| {
-        if n == 1 {
-            "1 piece".into()
-        } else {
-            format!("{n} pieces")
-        }
-    }));
+    parts.extend(f.pieces.map(|n| if n == 1 { "1 piece".into() } else { format!("{n} pieces") }));
     parts.extend(health.volume_mm3.map(|v| format!("{:.0} cm3", v / 1000.0)));
-    parts.extend(
-        f.volume_kept
-            .map(|v| format!("{:.0}% of the parents'", v * 100.0)),
-    );
+    parts.extend(f.volume_kept.map(|v| format!("{:.0}% of the parents'", v * 100.0)));
     if f.crumbs.count > 0 {
         let (n, share) = (f.crumbs.count, f.crumbs.share * 100.0);
         parts.push(format!("{n} loose pieces dropped ({share:.2}%)"));
@@ -211,19 +174,14 @@ fn frames(recipe: &Recipe) -> Vec<(String, f64)> {
         |v: &fieldgraft::recipe::MorphEntry| v.t.as_ref().map_or(vec![0.5], |t| t.0.clone());
     let variants = recipe.variants();
     let each = |(_, v): &(String, fieldgraft::recipe::MorphEntry)| {
-        times(v)
-            .into_iter()
-            .map(|t| (v.name.clone(), t))
-            .collect::<Vec<_>>()
+        times(v).into_iter().map(|t| (v.name.clone(), t)).collect::<Vec<_>>()
     };
     variants.iter().flat_map(each).collect()
 }
 
 /// The memory that may be used, bytes.
 pub fn limit(making: &Making) -> Option<u64> {
-    making
-        .max_memory
-        .or_else(|| available_memory().map(|free| free / 5 * 4))
+    making.max_memory.or_else(|| available_memory().map(|free| free / 5 * 4))
 }
 
 /// Refuses what is predicted to need more memory than allowed.
@@ -247,11 +205,7 @@ pub fn refuse(p: &Prediction, limit: Option<u64>) -> Result<(), Failure> {
 fn coarser(recipe: &Recipe) -> impl FnOnce(f64) -> Recipe + use<> {
     let mut recipe = recipe.clone();
     move |step| {
-        recipe.grid = GridEntry {
-            resolution: None,
-            voxel: Some(step),
-            ..recipe.grid
-        };
+        recipe.grid = GridEntry { resolution: None, voxel: Some(step), ..recipe.grid };
         recipe
     }
 }

@@ -38,12 +38,7 @@ impl Watch {
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         });
-        Self {
-            stop,
-            bar,
-            quiet: common.quiet,
-            verbose: common.verbose,
-        }
+        Self { stop, bar, quiet: common.quiet, verbose: common.verbose }
     }
 
     /// A message to stderr, above the bar; not when quiet.
@@ -92,10 +87,7 @@ pub fn put(data: &str) -> Result<(), Failure> {
     match write!(out, "{data}{newline}").and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
         Err(e) if e.kind() == ErrorKind::BrokenPipe => Err(Failure::new(0, "")),
-        Err(e) => Err(Failure::new(
-            Failure::FAILED,
-            format!("stdout: cannot be written: {e}"),
-        )),
+        Err(e) => Err(Failure::new(Failure::FAILED, format!("stdout: cannot be written: {e}"))),
     }
 }
 

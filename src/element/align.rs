@@ -48,9 +48,7 @@ fn labellings(e: &Element, to: DQuat) -> Vec<DQuat> {
                 DQuat::from_rotation_y(FRAC_PI_2),
                 DQuat::from_rotation_y(-FRAC_PI_2),
             ];
-            up.iter()
-                .flat_map(|&u| (0..4).map(move |k| u * quarter(k)))
-                .collect()
+            up.iter().flat_map(|&u| (0..4).map(move |k| u * quarter(k))).collect()
         }
         Shape::Cylinder | Shape::Capsule if round && !bent => {
             let ends = [DQuat::IDENTITY, over];
@@ -59,15 +57,9 @@ fn labellings(e: &Element, to: DQuat) -> Vec<DQuat> {
                 .collect()
         }
         _ => {
-            let turns = if bent {
-                [0, 2].as_slice()
-            } else {
-                &[0, 1, 2, 3]
-            };
+            let turns = if bent { [0, 2].as_slice() } else { &[0, 1, 2, 3] };
             let ends = [DQuat::IDENTITY, over];
-            ends.iter()
-                .flat_map(|&end| turns.iter().map(move |&k| end * quarter(k)))
-                .collect()
+            ends.iter().flat_map(|&end| turns.iter().map(move |&k| end * quarter(k))).collect()
         }
     }
 }
@@ -85,10 +77,7 @@ fn spin(a: DQuat) -> DQuat {
 fn relabelled(e: &Element, g: DQuat) -> Element {
     let m = DMat3::from_quat(g);
     // a quarter turn's matrix is 0 and ±1 but for round-off; a spin leaves x = y alone
-    let square = m
-        .to_cols_array()
-        .iter()
-        .all(|x| (x.abs() - x.abs().round()).abs() < 1e-9);
+    let square = m.to_cols_array().iter().all(|x| (x.abs() - x.abs().round()).abs() < 1e-9);
     let half = if square {
         let whole = |axis: DVec3| axis.abs().round().dot(e.half);
         DVec3::new(whole(m.x_axis), whole(m.y_axis), whole(m.z_axis))
@@ -103,12 +92,7 @@ fn relabelled(e: &Element, g: DQuat) -> Element {
     if m.y_axis.y < 0.0 {
         deform.bend = -deform.bend;
     }
-    Element {
-        rotation: (e.rotation * g).normalize(),
-        half,
-        deform,
-        ..e.clone()
-    }
+    Element { rotation: (e.rotation * g).normalize(), half, deform, ..e.clone() }
 }
 
 #[cfg(test)]

@@ -129,27 +129,15 @@ fn road(from: &Element, to: &Element) -> Road {
     let out = DMat3::from_quat(to.rotation);
     if straighten.is_none() && deform.is_none() {
         let matrix3 = out * DMat3::from_diagonal(scale) * into;
-        let map = DAffine3 {
-            matrix3,
-            translation: to.centre - matrix3 * from.centre,
-        };
-        return Road::Affine {
-            map,
-            stretch: scale.max_element() * (1.0 + 1e-12),
-        };
+        let map = DAffine3 { matrix3, translation: to.centre - matrix3 * from.centre };
+        return Road::Affine { map, stretch: scale.max_element() * (1.0 + 1e-12) };
     }
     Road::Deformed(Box::new(Steps {
-        into: DAffine3 {
-            matrix3: into,
-            translation: -(into * from.centre),
-        },
+        into: DAffine3 { matrix3: into, translation: -(into * from.centre) },
         straighten,
         scale,
         deform,
-        out: DAffine3 {
-            matrix3: out,
-            translation: to.centre,
-        },
+        out: DAffine3 { matrix3: out, translation: to.centre },
     }))
 }
 

@@ -17,9 +17,8 @@ pub(super) fn distance<const N: usize>(half: [f64; N], p: [f64; N]) -> f64 {
     let z = |i: usize| p[i] / least;
     let beyond = |i: usize| (half[i] / least - 1.0) * (half[i] / least + 1.0);
     let term = |i: usize, u: f64| half[i] / least * z(i) / (u + beyond(i));
-    let mut u = (0..N)
-        .map(|i| half[i] / least * z(i) - beyond(i))
-        .fold(f64::NEG_INFINITY, f64::max);
+    let mut u =
+        (0..N).map(|i| half[i] / least * z(i) - beyond(i)).fold(f64::NEG_INFINITY, f64::max);
     for _ in 0..64 {
         let (mut g, mut slope) = (-1.0, 0.0);
         for i in 0..N {
@@ -39,11 +38,7 @@ pub(super) fn distance<const N: usize>(half: [f64; N], p: [f64; N]) -> f64 {
             (near - p[i]) * (near - p[i])
         })
         .sum();
-    if level < 1.0 {
-        -squared.sqrt()
-    } else {
-        squared.sqrt()
-    }
+    if level < 1.0 { -squared.sqrt() } else { squared.sqrt() }
 }
 
 #[cfg(test)]
@@ -67,18 +62,8 @@ mod tests {
             .map(|i| f64::from(i) * std::f64::consts::TAU / 200_000.0)
             .map(|t| (a * t.cos(), b * t.sin()))
             .collect();
-        for p in [
-            [50.0, 3.0],
-            [99.0, 0.5],
-            [3.0, 40.0],
-            [160.0, 9.0],
-            [98.0, 0.0],
-            [20.0, 0.0],
-        ] {
-            let d = dense
-                .iter()
-                .map(|q| (q.0 - p[0]).hypot(q.1 - p[1]))
-                .fold(f64::MAX, f64::min);
+        for p in [[50.0, 3.0], [99.0, 0.5], [3.0, 40.0], [160.0, 9.0], [98.0, 0.0], [20.0, 0.0]] {
+            let d = dense.iter().map(|q| (q.0 - p[0]).hypot(q.1 - p[1])).fold(f64::MAX, f64::min);
             assert!((distance([a, b], p).abs() - d).abs() < 1e-6, "{p:?} {d}");
         }
     }

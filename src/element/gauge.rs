@@ -33,8 +33,7 @@ impl Gauge {
     /// Signed distance, as [`Element::distance_rounded`] gives it.
     pub fn distance(&self, p: DVec3) -> f64 {
         let v = self.into * (p - self.centre);
-        self.shape
-            .deformed_distance(self.half, self.bent.as_ref(), self.round, v)
+        self.shape.deformed_distance(self.half, self.bent.as_ref(), self.round, v)
     }
 
     /// An enclosure of the distance over a box.

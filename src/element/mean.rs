@@ -48,11 +48,7 @@ fn mean(parts: &[(&Element, f64)]) -> Element {
         } else {
             mean_rotation(&turns)
         },
-        half: if same(&|e| e.half == first.half) {
-            first.half
-        } else {
-            logs.map(f64::exp)
-        },
+        half: if same(&|e| e.half == first.half) { first.half } else { logs.map(f64::exp) },
         deform: if same(&|e| e.deform == first.deform) {
             first.deform
         } else {
@@ -94,9 +90,7 @@ pub fn ambiguous(elements: &[&Element]) -> bool {
     let even = 1.0 / elements.len().max(1) as f64;
     let turns: Vec<(DQuat, f64)> = elements.iter().map(|e| (e.rotation, even)).collect();
     let mean = mean_rotation(&turns);
-    turns
-        .iter()
-        .any(|(q, _)| log(mean.conjugate() * *q).length() > MOST)
+    turns.iter().any(|(q, _)| log(mean.conjugate() * *q).length() > MOST)
 }
 
 /// Karcher mean: the m with sum w log(m⁻¹ q) = 0, by fixed-point steps from the chordal mean.
@@ -130,13 +124,9 @@ fn chordal(turns: &[(DQuat, f64)]) -> DQuat {
         m *= 1.0 / trace;
     }
     let columns = [m.x_axis, m.y_axis, m.z_axis, m.w_axis];
-    let longest = columns.into_iter().fold(DVec4::ZERO, |a, b| {
-        if b.length_squared() > a.length_squared() {
-            b
-        } else {
-            a
-        }
-    });
+    let longest = columns
+        .into_iter()
+        .fold(DVec4::ZERO, |a, b| if b.length_squared() > a.length_squared() { b } else { a });
     DQuat::from_vec4(longest).normalize()
 }
 
@@ -145,11 +135,7 @@ pub(super) fn log(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
     let v = q.xyz();
     let s = v.length();
-    if s < 1e-150 {
-        2.0 * v
-    } else {
-        v * (2.0 * s.atan2(q.w) / s)
-    }
+    if s < 1e-150 { 2.0 * v } else { v * (2.0 * s.atan2(q.w) / s) }
 }
 
 #[cfg(test)]
@@ -223,35 +209,19 @@ mod tests {
 
     #[test]
     fn sizes_average_in_the_logarithm_and_shapes_mix() {
-        let a = Element {
-            half: DVec3::new(10.0, 10.0, 100.0),
-            ..unit()
-        };
-        let b = Element {
-            half: DVec3::new(40.0, 10.0, 100.0),
-            shape: Shape::Cylinder,
-            ..unit()
-        };
+        let a = Element { half: DVec3::new(10.0, 10.0, 100.0), ..unit() };
+        let b = Element { half: DVec3::new(40.0, 10.0, 100.0), shape: Shape::Cylinder, ..unit() };
         let m = average(&[(&a, 1.0), (&b, 1.0)]);
         assert!((m.half.x - 20.0).abs() < 1e-12);
-        assert_eq!(
-            m.shape,
-            Shape::Mix(vec![(Shape::Block, 0.5), (Shape::Cylinder, 0.5)])
-        );
+        assert_eq!(m.shape, Shape::Mix(vec![(Shape::Block, 0.5), (Shape::Cylinder, 0.5)]));
         assert_eq!(average(&[(&m, 1.0), (&m, 2.0)]).shape, m.shape);
     }
 
     #[test]
     fn opposite_rotations_are_ambiguous() {
         let up = unit();
-        let over = Element {
-            rotation: DQuat::from_rotation_x(std::f64::consts::PI),
-            ..unit()
-        };
-        let tilted = Element {
-            rotation: DQuat::from_rotation_x(1.0),
-            ..unit()
-        };
+        let over = Element { rotation: DQuat::from_rotation_x(std::f64::consts::PI), ..unit() };
+        let tilted = Element { rotation: DQuat::from_rotation_x(1.0), ..unit() };
         assert!(ambiguous(&[&up, &over]));
         assert!(!ambiguous(&[&up, &tilted]));
         // a block upside down is the same block

@@ -82,10 +82,7 @@ impl Element {
         deform: Deform,
     ) -> Result<Self, ElementError> {
         if let Some(i) = (0..3).find(|&i| !(half[i] > 0.0 && half[i].is_finite())) {
-            return Err(ElementError::Size {
-                axis: ['x', 'y', 'z'][i],
-                size: 2.0 * half[i],
-            });
+            return Err(ElementError::Size { axis: ['x', 'y', 'z'][i], size: 2.0 * half[i] });
         }
         let length = rotation.length();
         if !(centre.is_finite() && length.is_finite() && length > 0.0) {
@@ -93,13 +90,7 @@ impl Element {
         }
         let deform = Deform::new(deform.twist, deform.taper, deform.bend)?;
         Barr::check(&deform, half)?;
-        Ok(Self {
-            shape,
-            centre,
-            rotation: rotation / length,
-            half,
-            deform,
-        })
+        Ok(Self { shape, centre, rotation: rotation / length, half, deform })
     }
 
     /// A box with these half sizes.
@@ -159,10 +150,7 @@ impl Element {
             centre: self.centre * flip,
             rotation: DQuat::from_mat3(&turned).normalize(),
             half: self.half,
-            deform: Deform {
-                twist: -self.deform.twist,
-                ..self.deform
-            },
+            deform: Deform { twist: -self.deform.twist, ..self.deform },
         }
     }
 
@@ -188,8 +176,7 @@ impl Element {
     /// The distance to the element with its edges rounded by `round` mm, its size unchanged.
     pub fn distance_rounded(&self, p: DVec3, round: f64) -> f64 {
         let v = self.rotation.conjugate() * (p - self.centre);
-        self.shape
-            .deformed_distance(self.half, self.bent().as_ref(), round, v)
+        self.shape.deformed_distance(self.half, self.bent().as_ref(), round, v)
     }
 
     /// An enclosure of the distance over a box.
@@ -204,9 +191,7 @@ impl Element {
         let m = DMat3::from_quat(self.rotation);
         if self.deform.is_none() && matches!(self.shape, Shape::Ellipsoid) {
             let scaled = (m * DMat3::from_diagonal(self.half)).transpose();
-            let reach = scaled
-                .to_cols_array_2d()
-                .map(|c| DVec3::from_array(c).length());
+            let reach = scaled.to_cols_array_2d().map(|c| DVec3::from_array(c).length());
             return Aabb::around(self.centre, DVec3::from_array(reach));
         }
         let half = m.abs() * (b.size() * 0.5);
@@ -215,10 +200,7 @@ impl Element {
 
     /// A box round the element in its own axes, mm from its centre.
     fn local_bounds(&self) -> Aabb {
-        self.barr()
-            .map_or(Aabb::around(DVec3::ZERO, self.half), |b| {
-                b.bounds(self.half)
-            })
+        self.barr().map_or(Aabb::around(DVec3::ZERO, self.half), |b| b.bounds(self.half))
     }
 
     fn barr(&self) -> Option<Barr> {

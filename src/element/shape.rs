@@ -60,10 +60,7 @@ impl Form for Mirrored {
     }
     fn bounds(&self) -> Aabb {
         let b = self.0.bounds();
-        Aabb::new(
-            DVec3::new(-b.max.x, b.min.y, b.min.z),
-            DVec3::new(-b.min.x, b.max.y, b.max.z),
-        )
+        Aabb::new(DVec3::new(-b.max.x, b.min.y, b.min.z), DVec3::new(-b.min.x, b.max.y, b.max.z))
     }
 }
 
@@ -77,11 +74,7 @@ pub(super) struct Bent {
 
 impl Bent {
     pub fn new(barr: Barr, half: DVec3) -> Self {
-        Self {
-            barr,
-            near: barr.near(half),
-            bounds: barr.bounds(half),
-        }
+        Self { barr, near: barr.near(half), bounds: barr.bounds(half) }
     }
 }
 
@@ -185,10 +178,7 @@ fn joined(d: &[f64]) -> f64 {
     if inside <= 0.0 {
         return inside;
     }
-    d.iter()
-        .map(|d| d.max(0.0) * d.max(0.0))
-        .sum::<f64>()
-        .sqrt()
+    d.iter().map(|d| d.max(0.0) * d.max(0.0)).sum::<f64>().sqrt()
 }
 
 /// Distance to the (perhaps elliptical) section of a cylinder.
@@ -229,9 +219,5 @@ fn polygon(corners: &[DVec2], half: DVec2, p: DVec2) -> f64 {
         inside = inside.max(to.perp_dot(edge));
         a = b;
     }
-    if inside <= 0.0 {
-        -squared.sqrt()
-    } else {
-        squared.sqrt()
-    }
+    if inside <= 0.0 { -squared.sqrt() } else { squared.sqrt() }
 }

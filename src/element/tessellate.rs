@@ -42,48 +42,29 @@ fn outline(e: &Element, n: u32) -> Option<Outline> {
     let turn = e.deform.twist.abs().max(e.deform.bend.abs());
     let slices = ((turn / TAU * f64::from(n)).ceil() as u32).max(1);
     let round = |scale: DVec2| -> Vec<DVec2> {
-        (0..n)
-            .map(|i| scale * DVec2::from_angle(TAU * f64::from(i) / f64::from(n)))
-            .collect()
+        (0..n).map(|i| scale * DVec2::from_angle(TAU * f64::from(i) / f64::from(n))).collect()
     };
     let straight = |section: Vec<DVec2>, long: f64| -> Vec<(Vec<DVec2>, f64)> {
         (0..=slices)
-            .map(|i| {
-                (
-                    section.clone(),
-                    long * (2.0 * f64::from(i) / f64::from(slices) - 1.0),
-                )
-            })
+            .map(|i| (section.clone(), long * (2.0 * f64::from(i) / f64::from(slices) - 1.0)))
             .collect()
     };
     let (rings, end) = match &e.shape {
         Shape::Block => {
-            let corners = [
-                DVec2::NEG_ONE,
-                DVec2::new(1.0, -1.0),
-                DVec2::ONE,
-                DVec2::new(-1.0, 1.0),
-            ];
-            (
-                straight(corners.map(|c| c * flat).to_vec(), half.z),
-                End::Fan,
-            )
+            let corners =
+                [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
+            (straight(corners.map(|c| c * flat).to_vec(), half.z), End::Fan)
         }
-        Shape::Prism(corners) => (
-            straight(corners.iter().map(|c| *c * flat).collect(), half.z),
-            End::Fan,
-        ),
+        Shape::Prism(corners) => {
+            (straight(corners.iter().map(|c| *c * flat).collect(), half.z), End::Fan)
+        }
         Shape::Cylinder => (straight(round(flat), half.z), End::Point(half.z)),
         Shape::Capsule => {
             let cap = half.min_element();
             let mut rings = Vec::new();
             let ends = latitudes(n);
             let long = half.z - cap;
-            rings.extend(
-                ends.iter()
-                    .rev()
-                    .map(|a| (round(flat * a.x), -long - cap * a.y)),
-            );
+            rings.extend(ends.iter().rev().map(|a| (round(flat * a.x), -long - cap * a.y)));
             // without a straight part both half balls share one ring
             rings.extend(
                 straight(round(flat), long)
@@ -96,11 +77,7 @@ fn outline(e: &Element, n: u32) -> Option<Outline> {
         Shape::Ellipsoid => {
             let ends = latitudes(n);
             let mut rings = Vec::new();
-            rings.extend(
-                ends.iter()
-                    .rev()
-                    .map(|a| (round(flat * a.x), -half.z * a.y)),
-            );
+            rings.extend(ends.iter().rev().map(|a| (round(flat * a.x), -half.z * a.y)));
             rings.push((round(flat), 0.0));
             rings.extend(ends.iter().map(|a| (round(flat * a.x), half.z * a.y)));
             (rings, End::Point(half.z))
@@ -113,17 +90,14 @@ fn outline(e: &Element, n: u32) -> Option<Outline> {
 /// Cosine and sine of the latitudes between equator and pole, both left out.
 fn latitudes(n: u32) -> Vec<DVec2> {
     let rows = (n / 4).max(2);
-    (1..rows)
-        .map(|i| DVec2::from_angle(0.25 * TAU * f64::from(i) / f64::from(rows)))
-        .collect()
+    (1..rows).map(|i| DVec2::from_angle(0.25 * TAU * f64::from(i) / f64::from(rows))).collect()
 }
 
 impl Outline {
     fn points(&self) -> Vec<DVec3> {
         let rings = self.rings.iter();
-        let mut points: Vec<DVec3> = rings
-            .flat_map(|(ring, z)| ring.iter().map(|p| p.extend(*z)))
-            .collect();
+        let mut points: Vec<DVec3> =
+            rings.flat_map(|(ring, z)| ring.iter().map(|p| p.extend(*z))).collect();
         if let End::Point(z) = self.end {
             points.extend([DVec3::new(0.0, 0.0, -z), DVec3::new(0.0, 0.0, z)]);
         }
@@ -169,11 +143,7 @@ mod tests {
     use std::collections::HashSet;
 
     fn shapes() -> Vec<Element> {
-        let kite = [
-            DVec2::new(0.0, -1.0),
-            DVec2::new(1.0, 0.2),
-            DVec2::new(-0.7, 0.9),
-        ];
+        let kite = [DVec2::new(0.0, -1.0), DVec2::new(1.0, 0.2), DVec2::new(-0.7, 0.9)];
         let straight = [
             Shape::Block,
             Shape::Cylinder,
@@ -188,18 +158,10 @@ mod tests {
             half: DVec3::new(20.0, 25.0, 150.0),
             deform: Deform::NONE,
         });
-        let bent = straight.clone().map(|e| Element {
-            deform: Deform {
-                twist: 0.7,
-                taper: 0.6,
-                bend: -1.2,
-            },
-            ..e
-        });
-        let ball = Element {
-            half: DVec3::splat(20.0),
-            ..straight[2].clone()
-        };
+        let bent = straight
+            .clone()
+            .map(|e| Element { deform: Deform { twist: 0.7, taper: 0.6, bend: -1.2 }, ..e });
+        let ball = Element { half: DVec3::splat(20.0), ..straight[2].clone() };
         [straight.to_vec(), bent.to_vec(), vec![ball]].concat()
     }
 
@@ -207,25 +169,14 @@ mod tests {
     fn shells_are_closed_and_lie_on_the_surface() {
         for e in shapes() {
             let mesh = tessellate(&e, 16).unwrap();
-            let edges: HashSet<(u32, u32)> = mesh
-                .faces
-                .iter()
-                .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
-                .collect();
+            let edges: HashSet<(u32, u32)> =
+                mesh.faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
             assert_eq!(edges.len(), 3 * mesh.faces.len());
-            assert!(
-                edges.iter().all(|&(a, b)| edges.contains(&(b, a))),
-                "{:?}",
-                e.shape
-            );
+            assert!(edges.iter().all(|&(a, b)| edges.contains(&(b, a))), "{:?}", e.shape);
             // one sphere: V - E + F = 2
             assert_eq!(mesh.points.len() + mesh.faces.len(), edges.len() / 2 + 2);
             assert!(mesh.volume() > 0.0);
-            assert!(
-                mesh.points.iter().all(|&p| e.distance(p).abs() < 1e-9),
-                "{:?}",
-                e.shape
-            );
+            assert!(mesh.points.iter().all(|&p| e.distance(p).abs() < 1e-9), "{:?}", e.shape);
         }
     }
 
@@ -246,15 +197,6 @@ mod tests {
     #[test]
     fn outlines_without_a_form_are_none() {
         let mix = Shape::Mix(vec![(Shape::Block, 0.5), (Shape::Cylinder, 0.5)]);
-        assert!(
-            tessellate(
-                &Element {
-                    shape: mix,
-                    ..shapes()[0].clone()
-                },
-                16
-            )
-            .is_none()
-        );
+        assert!(tessellate(&Element { shape: mix, ..shapes()[0].clone() }, 16).is_none());
     }
 }

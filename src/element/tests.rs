@@ -18,12 +18,8 @@ impl Form for BallForm {
 }
 
 fn shape() -> impl Strategy<Value = Shape> {
-    let kite = [
-        DVec2::new(0.0, -1.0),
-        DVec2::new(1.0, 0.2),
-        DVec2::new(0.0, 0.9),
-        DVec2::new(-0.7, 0.0),
-    ];
+    let kite =
+        [DVec2::new(0.0, -1.0), DVec2::new(1.0, 0.2), DVec2::new(0.0, 0.9), DVec2::new(-0.7, 0.0)];
     prop_oneof![
         Just(Shape::Block),
         Just(Shape::Cylinder),
@@ -31,10 +27,7 @@ fn shape() -> impl Strategy<Value = Shape> {
         Just(Shape::Ellipsoid),
         Just(Shape::prism(&kite).unwrap()),
         Just(Shape::Mesh(Arc::new(BallForm))),
-        Just(Shape::Mix(vec![
-            (Shape::Block, 0.25),
-            (Shape::Cylinder, 0.75)
-        ])),
+        Just(Shape::Mix(vec![(Shape::Block, 0.25), (Shape::Cylinder, 0.75)])),
     ]
 }
 
@@ -161,21 +154,9 @@ fn distances_known_by_hand() {
     assert!((rod.distance(DVec3::new(5.0, 0.0, 4.0)) - 5.0).abs() < 1e-12);
     let capsule = Element::capsule(DVec3::ZERO, DVec3::new(0.0, 10.0, 0.0), 2.0).unwrap();
     assert!((capsule.distance(DVec3::new(0.0, 13.0, 4.0)) - 3.0).abs() < 1e-12);
-    let square = [
-        DVec2::NEG_ONE,
-        DVec2::new(1.0, -1.0),
-        DVec2::ONE,
-        DVec2::new(-1.0, 1.0),
-    ];
-    let prism = Element {
-        shape: Shape::prism(&square).unwrap(),
-        ..block.clone()
-    };
-    for p in [
-        DVec3::new(4.0, 1.0, 2.0),
-        DVec3::new(1.2, 0.1, 0.3),
-        DVec3::new(9.0, 9.0, 0.0),
-    ] {
+    let square = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
+    let prism = Element { shape: Shape::prism(&square).unwrap(), ..block.clone() };
+    for p in [DVec3::new(4.0, 1.0, 2.0), DVec3::new(1.2, 0.1, 0.3), DVec3::new(9.0, 9.0, 0.0)] {
         assert!((prism.distance(p) - block.distance(p)).abs() < 1e-12);
     }
 }
@@ -199,27 +180,14 @@ fn a_rounded_prism_keeps_its_slanted_sides() {
 fn bad_elements_are_refused() {
     let size = Element::block(DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0), DQuat::IDENTITY);
     assert!(matches!(size, Err(ElementError::Size { axis: 'y', .. })));
-    assert!(matches!(
-        Element::rod(DVec3::X, DVec3::X, 1.0),
-        Err(ElementError::Ends(_))
-    ));
-    assert!(matches!(
-        Element::rod(DVec3::NAN, DVec3::X, 1.0),
-        Err(ElementError::Place)
-    ));
+    assert!(matches!(Element::rod(DVec3::X, DVec3::X, 1.0), Err(ElementError::Ends(_))));
+    assert!(matches!(Element::rod(DVec3::NAN, DVec3::X, 1.0), Err(ElementError::Place)));
     let thick = Element::block(DVec3::ZERO, DVec3::splat(50.0), DQuat::IDENTITY).unwrap();
-    let bend = Deform {
-        bend: 3.0,
-        ..Deform::NONE
-    };
+    let bend = Deform { bend: 3.0, ..Deform::NONE };
     assert!(matches!(thick.deformed(bend), Err(ElementError::Warp(_))));
     let clockwise = [DVec2::ZERO, DVec2::Y, DVec2::X];
-    assert!(matches!(
-        Shape::prism(&clockwise),
-        Err(ElementError::Polygon(_))
-    ));
-    let star: Vec<DVec2> = (0..5)
-        .map(|i| DVec2::from_angle(f64::from(i) * 0.8 * std::f64::consts::PI))
-        .collect();
+    assert!(matches!(Shape::prism(&clockwise), Err(ElementError::Polygon(_))));
+    let star: Vec<DVec2> =
+        (0..5).map(|i| DVec2::from_angle(f64::from(i) * 0.8 * std::f64::consts::PI)).collect();
     assert!(matches!(Shape::prism(&star), Err(ElementError::Polygon(_))));
 }

@@ -35,11 +35,7 @@ impl Join {
 
     /// Values over ranges; all forms are monotone, so the ends decide.
     pub fn range(self, a: Interval, b: Interval) -> Interval {
-        let b = if self == Self::Cut {
-            Interval::new(b.hi, b.lo)
-        } else {
-            b
-        };
+        let b = if self == Self::Cut { Interval::new(b.hi, b.lo) } else { b };
         Interval::new(self.value(a.lo, b.lo), self.value(a.hi, b.hi))
     }
 }
@@ -161,21 +157,15 @@ impl Moved {
         let m = by.matrix3;
         let axes = [m.x_axis, m.y_axis, m.z_axis];
         let lengths = axes.map(DVec3::length);
-        let (least, most) = lengths
-            .iter()
-            .fold((f64::INFINITY, 0.0f64), |(l, m), &x| (l.min(x), m.max(x)));
+        let (least, most) =
+            lengths.iter().fold((f64::INFINITY, 0.0f64), |(l, m), &x| (l.min(x), m.max(x)));
         let slant =
             [(0, 1), (1, 2), (2, 0)].map(|(i, j): (usize, usize)| axes[i].dot(axes[j]).abs());
         let square = slant.iter().all(|s| *s <= 1e-9 * most * most);
         if !(by.is_finite() && least > 0.0 && most - least <= 1e-9 * most && square) {
             return Err(Uneven { least, most });
         }
-        Ok(Self {
-            field,
-            by,
-            back: by.inverse(),
-            scale: most,
-        })
+        Ok(Self { field, by, back: by.inverse(), scale: most })
     }
 }
 

@@ -70,9 +70,7 @@ pub fn sample(f: &dyn Field, lattice: Lattice, job: &dyn Job) -> Result<Sampling
 pub fn sample_dense(f: &dyn Field, lattice: Lattice, job: &dyn Job) -> Result<Sampling, Cancelled> {
     job.stage("sample");
     let mut sampling = Sampling::outside(lattice);
-    let all: Vec<_> = (0..sampling.bricks.bricks.len())
-        .map(|i| (i, [None; 8]))
-        .collect();
+    let all: Vec<_> = (0..sampling.bricks.bricks.len()).map(|i| (i, [None; 8])).collect();
     sampling.fill(f, &all, job)?;
     Ok(sampling)
 }
@@ -80,10 +78,7 @@ pub fn sample_dense(f: &dyn Field, lattice: Lattice, job: &dyn Job) -> Result<Sa
 impl Sampling {
     fn outside(lattice: Lattice) -> Self {
         let bricks = Bricks::outside(lattice);
-        let stats = SampleStats {
-            bricks: bricks.bricks.len() as u64,
-            ..SampleStats::default()
-        };
+        let stats = SampleStats { bricks: bricks.bricks.len() as u64, ..SampleStats::default() };
         Self { bricks, stats }
     }
 
@@ -110,10 +105,7 @@ impl Sampling {
             }
             Ok((i, done))
         };
-        let filled = list
-            .par_iter()
-            .map(evaluate)
-            .collect::<Result<Vec<_>, _>>()?;
+        let filled = list.par_iter().map(evaluate).collect::<Result<Vec<_>, _>>()?;
         for (i, (samples, clipped)) in filled {
             self.stats.border_clipped |= clipped;
             self.bricks.bricks[i] = Brick::Band(samples);
@@ -155,9 +147,7 @@ fn evaluate(
         match side {
             None => order.extend(cube.iter().map(|m| (*m, sample_of(lo, *m)))),
             Some(_) if held.is_some() => {}
-            Some(side) => cube
-                .iter()
-                .for_each(|m| samples[slot(*m)] = side.infinite()),
+            Some(side) => cube.iter().for_each(|m| samples[slot(*m)] = side.infinite()),
         }
     }
     at.extend(order.iter().map(|&(_, [i, j, k])| lattice.point(i, j, k)));
@@ -190,11 +180,7 @@ fn slot([i, j, k]: [u8; 3]) -> usize {
 /// outside.
 fn stored(v: f64) -> f32 {
     const LARGEST: f64 = 1e30;
-    if v.is_nan() {
-        LARGEST as f32
-    } else {
-        v.clamp(-LARGEST, LARGEST) as f32
-    }
+    if v.is_nan() { LARGEST as f32 } else { v.clamp(-LARGEST, LARGEST) as f32 }
 }
 
 /// The least value of an outermost sample.
@@ -204,9 +190,7 @@ fn border_value(lattice: &Lattice) -> f32 {
 
 /// Whether a sample is outermost, or beyond.
 fn on_border(lattice: &Lattice, at: [u32; 3]) -> bool {
-    at.iter()
-        .zip(lattice.size)
-        .any(|(&i, n)| i == 0 || i.saturating_add(1) >= n)
+    at.iter().zip(lattice.size).any(|(&i, n)| i == 0 || i.saturating_add(1) >= n)
 }
 
 /// Skipped cubes that a cell with both signs touches: the mesher reads their samples.
@@ -223,21 +207,13 @@ fn promoted(
         check(job)?;
         let lo = bricks.place(*i).map(|b| b * BRICK);
         let open = (0..8).filter(|&n| cubes[n].is_none());
-        Ok(open
-            .flat_map(|n| touched(bricks, cube(lo, n)))
-            .collect::<Vec<_>>())
+        Ok(open.flat_map(|n| touched(bricks, cube(lo, n))).collect::<Vec<_>>())
     };
-    let lists = active
-        .par_iter()
-        .map(touched)
-        .collect::<Result<Vec<_>, Cancelled>>()?;
+    let lists = active.par_iter().map(touched).collect::<Result<Vec<_>, Cancelled>>()?;
     let mut all: BTreeMap<usize, Cubes> = BTreeMap::new();
     for ([x, y, z], side) in lists.into_iter().flatten() {
         let brick = bricks.index([x, y, z].map(|i| i / BRICK));
-        let n = [x, y, z]
-            .iter()
-            .rev()
-            .fold(0, |n, i| 2 * n + (i / CUBE % 2) as usize);
+        let n = [x, y, z].iter().rev().fold(0, |n, i| 2 * n + (i / CUBE % 2) as usize);
         all.entry(brick).or_insert([Some(side); 8])[n] = None;
     }
     Ok(all.into_iter().collect())
@@ -256,11 +232,7 @@ fn touched(bricks: &Bricks<f32>, lo: [u32; 3]) -> Vec<([u32; 3], Side)> {
         // the corners of all cells that touch `next`; one that differs makes a mixed cell
         let range = |a: usize| {
             let hi = (lo[a] + CUBE + 1).min(bricks.lattice.size[a]);
-            if next[a] > lo[a] {
-                next[a] - 1..hi
-            } else {
-                lo[a]..hi
-            }
+            if next[a] > lo[a] { next[a] - 1..hi } else { lo[a]..hi }
         };
         let mut row = [0.0; CUBE as usize + 1];
         let row = &mut row[..range(0).len()];

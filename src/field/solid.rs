@@ -23,9 +23,7 @@ pub struct Solid {
 impl Solid {
     /// The element with its edges rounded by `round` mm, its size unchanged.
     pub fn new(element: &Element, round: f64) -> Self {
-        Self {
-            gauge: element.gauge(round),
-        }
+        Self { gauge: element.gauge(round) }
     }
 }
 
@@ -103,10 +101,7 @@ impl Assembly {
             root: support.grow(ROOM * support.size().max_element()),
             support,
         };
-        all.nodes.push(Node {
-            parts: (0..parts.len() as u32).collect(),
-            children: None,
-        });
+        all.nodes.push(Node { parts: (0..parts.len() as u32).collect(), children: None });
         // parts that meet nowhere leave nothing to look up
         if !all.root.is_empty() {
             all.split(0, all.root, 0);
@@ -121,10 +116,7 @@ impl Assembly {
         let first = self.nodes.len();
         for i in 0..8 {
             let parts = self.relevant(&self.nodes[node].parts, &octant(&cell, i));
-            self.nodes.push(Node {
-                parts,
-                children: None,
-            });
+            self.nodes.push(Node { parts, children: None });
         }
         self.nodes[node].children = Some(first);
         for i in 0..8 {
@@ -185,11 +177,7 @@ impl Assembly {
                 Join::Cut => -least <= f,
                 Join::Meet => false,
             };
-            if idle {
-                f
-            } else {
-                join.value(f, gauge.distance(p))
-            }
+            if idle { f } else { join.value(f, gauge.distance(p)) }
         })
     }
 }
@@ -198,11 +186,7 @@ impl Assembly {
 fn octant(b: &Aabb, i: usize) -> Aabb {
     let c = b.centre();
     let pick = |axis: usize| {
-        if i >> axis & 1 == 0 {
-            (b.min[axis], c[axis])
-        } else {
-            (c[axis], b.max[axis])
-        }
+        if i >> axis & 1 == 0 { (b.min[axis], c[axis]) } else { (c[axis], b.max[axis]) }
     };
     let ((x0, x1), (y0, y1), (z0, z1)) = (pick(0), pick(1), pick(2));
     Aabb::new(DVec3::new(x0, y0, z0), DVec3::new(x1, y1, z1))

@@ -36,16 +36,8 @@ fn part() -> impl Strategy<Value = Part> {
         1 => (1.0..60.0f64).prop_map(Join::Blend),
     ];
     let half = [10.0..50.0f64, 10.0..50.0f64, 60.0..200.0f64];
-    (
-        shape,
-        vector(200.0),
-        vector(3.0),
-        half,
-        deform,
-        0.0..12.0f64,
-        join,
-    )
-        .prop_map(|(shape, centre, turn, half, deform, round, join)| Part {
+    (shape, vector(200.0), vector(3.0), half, deform, 0.0..12.0f64, join).prop_map(
+        |(shape, centre, turn, half, deform, round, join)| Part {
             element: Element {
                 shape,
                 centre,
@@ -55,7 +47,8 @@ fn part() -> impl Strategy<Value = Part> {
             },
             round,
             join,
-        })
+        },
+    )
 }
 
 fn parts() -> impl Strategy<Value = Vec<Part>> {
@@ -134,40 +127,15 @@ fn ball(x: f64) -> Shared {
 fn values_known_by_hand() {
     let near =
         |f: &dyn Field, p: DVec3, d: f64| assert!((f.value(p) - d).abs() < 1e-9, "{}", f.value(p));
-    let join = |join| Joined {
-        a: ball(0.0),
-        b: ball(12.0),
-        join,
-    };
+    let join = |join| Joined { a: ball(0.0), b: ball(12.0), join };
     near(&join(Join::Add), DVec3::X * 6.0, -4.0);
     near(&join(Join::Cut), DVec3::X * 6.0, 4.0);
     near(&join(Join::Meet), DVec3::X * -4.0, 6.0);
     // both distances are -4: the blend sinks by a quarter of its width
     near(&join(Join::Blend(8.0)), DVec3::X * 6.0, -6.0);
-    near(
-        &Shell {
-            field: ball(0.0),
-            thickness: 4.0,
-        },
-        DVec3::Y * 9.0,
-        -1.0,
-    );
-    near(
-        &Offset {
-            field: ball(0.0),
-            distance: 3.0,
-        },
-        DVec3::Y * 14.0,
-        1.0,
-    );
-    near(
-        &Mirror {
-            field: ball(30.0),
-            axis: 0,
-        },
-        DVec3::X * -45.0,
-        5.0,
-    );
+    near(&Shell { field: ball(0.0), thickness: 4.0 }, DVec3::Y * 9.0, -1.0);
+    near(&Offset { field: ball(0.0), distance: 3.0 }, DVec3::Y * 14.0, 1.0);
+    near(&Mirror { field: ball(30.0), axis: 0 }, DVec3::X * -45.0, 5.0);
     let block = Element::block(DVec3::ZERO, DVec3::splat(10.0), DQuat::IDENTITY).unwrap();
     // an edge rounded by 4: the corner's centre of curvature lies at 6
     let d = 50f64.sqrt() - 4.0;
@@ -179,11 +147,7 @@ fn values_known_by_hand() {
 fn senseless_solids_are_refused() {
     assert!(matches!(Assembly::new(&[]), Err(SolidError::Empty)));
     let element = Element::block(DVec3::ZERO, DVec3::ONE, DQuat::IDENTITY).unwrap();
-    let cut = Part {
-        element,
-        round: 0.0,
-        join: Join::Cut,
-    };
+    let cut = Part { element, round: 0.0, join: Join::Cut };
     assert!(matches!(Assembly::new(&[cut]), Err(SolidError::First)));
     let uneven = DAffine3::from_scale(DVec3::new(1.0, 1.0, 2.0));
     assert!(Moved::new(ball(0.0), uneven).is_err());

@@ -35,9 +35,7 @@ impl<T> Bricks<T> {
         Self {
             lattice,
             size,
-            bricks: std::iter::repeat_with(|| Brick::Outside)
-                .take(count)
-                .collect(),
+            bricks: std::iter::repeat_with(|| Brick::Outside).take(count).collect(),
         }
     }
 
@@ -56,19 +54,12 @@ impl<T> Bricks<T> {
     /// Brick `b`; none outside the lattice.
     pub fn brick(&self, b: [u32; 3]) -> Option<&Brick<T>> {
         let within = b.iter().zip(&self.size).all(|(&b, &n)| b < n);
-        if within {
-            self.bricks.get(self.index(b))
-        } else {
-            None
-        }
+        if within { self.bricks.get(self.index(b)) } else { None }
     }
 
     /// Number of bricks that hold samples.
     pub fn active(&self) -> usize {
-        self.bricks
-            .iter()
-            .filter(|b| matches!(b, Brick::Band(_)))
-            .count()
+        self.bricks.iter().filter(|b| matches!(b, Brick::Band(_))).count()
     }
 }
 
@@ -113,11 +104,7 @@ mod tests {
     use glam::DVec3;
 
     fn some() -> Bricks<i32> {
-        let lattice = Lattice {
-            origin: DVec3::ZERO,
-            step: 1.0,
-            size: [19, 9, 8],
-        };
+        let lattice = Lattice { origin: DVec3::ZERO, step: 1.0, size: [19, 9, 8] };
         let mut b = Bricks::outside(lattice);
         let at = b.index([1, 0, 0]);
         b.bricks[at] = Brick::Band(Box::new(std::array::from_fn(|n| n as i32)));

@@ -21,11 +21,7 @@ impl Lattice {
     pub fn covering(domain: &Aabb, step: f64) -> Self {
         let cells = (domain.size() / step).ceil() + 2.0;
         let origin = domain.centre() - cells * step * 0.5;
-        Self {
-            origin,
-            step,
-            size: cells.to_array().map(|n| n.max(1.0) as u32 + 1),
-        }
+        Self { origin, step, size: cells.to_array().map(|n| n.max(1.0) as u32 + 1) }
     }
 
     /// Position of a sample, mm.
@@ -42,9 +38,7 @@ impl Lattice {
 
     /// Number of samples in all.
     pub fn samples(&self) -> u64 {
-        self.size
-            .iter()
-            .fold(1, |n, &side| u64::saturating_mul(n, u64::from(side)))
+        self.size.iter().fold(1, |n, &side| u64::saturating_mul(n, u64::from(side)))
     }
 
     /// Whether f32 files can tell the points of a cell apart: the step is at least 256 ulps of the

@@ -27,19 +27,14 @@ impl<const N: usize> Block<N> {
             put_border_outside(&bricks.lattice, at, row);
         }
         let inside = samples.iter().filter(|&&v| v < 0.0).count();
-        if inside == 0 || inside == samples.len() {
-            None
-        } else {
-            Some(Self { samples })
-        }
+        if inside == 0 || inside == samples.len() { None } else { Some(Self { samples }) }
     }
 }
 
 /// Bricks whose blocks may hold both signs, in order.
 pub(super) fn candidates(bricks: &Bricks<f32>, back: u32) -> Vec<usize> {
     let all = (0..bricks.bricks.len()).into_par_iter();
-    all.filter(|&n| !uniform(bricks, bricks.place(n), back))
-        .collect()
+    all.filter(|&n| !uniform(bricks, bricks.place(n), back)).collect()
 }
 
 /// Samples on the border and beyond become positive, as `field::sample` leaves them.

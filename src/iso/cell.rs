@@ -42,11 +42,7 @@ impl Planes {
             std::array::from_fn(|n| {
                 let room = ULPS * ulp(p[n].abs().max(p[n + 1].abs())) / (p[n + 1] - p[n]);
                 // a lattice that reaches infinity has NaN here
-                if room > MARGIN {
-                    room.min(0.25)
-                } else {
-                    MARGIN
-                }
+                if room > MARGIN { room.min(0.25) } else { MARGIN }
             })
         });
         Self { at, margin }
@@ -71,17 +67,10 @@ impl Cell<'_> {
     /// Where the surface crosses an edge, by linear interpolation.
     pub(super) fn crossing(&self, edge: Edge) -> DVec3 {
         let axis = usize::from(edge.axis);
-        let (a, b) = (
-            self.values[usize::from(edge.corner)],
-            self.values[usize::from(edge.end())],
-        );
+        let (a, b) = (self.values[usize::from(edge.corner)], self.values[usize::from(edge.end())]);
         let share = a / (a - b);
         let margin = self.margin()[axis];
-        let share = if share.is_finite() {
-            share.clamp(margin, 1.0 - margin)
-        } else {
-            0.5
-        };
+        let share = if share.is_finite() { share.clamp(margin, 1.0 - margin) } else { 0.5 };
         let mut p = corner(edge.corner);
         p[axis] = share;
         p
@@ -92,11 +81,7 @@ impl Cell<'_> {
     pub(super) fn apex(&self, patches: &Patches, edges: &[Edge]) -> DVec3 {
         let sum: DVec3 = edges.iter().map(|&e| self.crossing(e)).sum();
         let mean = sum / edges.len() as f64;
-        if patches.count() > 1 {
-            mean
-        } else {
-            self.settle(mean)
-        }
+        if patches.count() > 1 { mean } else { self.settle(mean) }
     }
 
     /// Two Newton steps along the gradient, inside the cell. On a ball they take a third off the

@@ -24,18 +24,12 @@ pub(super) fn extract(bricks: &Bricks<f32>, job: &dyn Job) -> Result<TriMesh, Ca
     let surface = Surface::new(bricks, Apexes::Wide, job)?;
     let mut mesh = surface.blank();
     let points = surface.points_of(&mut mesh.points);
-    let parts: Vec<_> = points
-        .into_iter()
-        .zip(surface.faces_of(&mut mesh.faces))
-        .collect();
-    parts
-        .into_par_iter()
-        .enumerate()
-        .try_for_each(|(n, (points, faces))| {
-            check(job)?;
-            fill(&surface, n, points, faces);
-            Ok(())
-        })?;
+    let parts: Vec<_> = points.into_iter().zip(surface.faces_of(&mut mesh.faces)).collect();
+    parts.into_par_iter().enumerate().try_for_each(|(n, (points, faces))| {
+        check(job)?;
+        fill(&surface, n, points, faces);
+        Ok(())
+    })?;
     Ok(mesh)
 }
 
@@ -43,11 +37,7 @@ pub(super) fn extract(bricks: &Bricks<f32>, job: &dyn Job) -> Result<TriMesh, Ca
 fn fill(surface: &Surface, n: usize, points: &mut [DVec3], faces: &mut [[u32; 3]]) {
     let beside = surface.beside(surface.indices[n].brick);
     let (points, faces) = (points.iter_mut(), faces.iter_mut());
-    let mut out = Writer {
-        points,
-        faces,
-        next: surface.starts[n],
-    };
+    let mut out = Writer { points, faces, next: surface.starts[n] };
     surface.visit(n, |cell, config| out.cell(cell, config, &beside));
 }
 

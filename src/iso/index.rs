@@ -46,10 +46,7 @@ impl Signs {
     fn new(block: &Closed) -> Self {
         let mut rows = [[0; 9]; 9];
         for (n, row) in block.samples.chunks_exact(9).enumerate() {
-            let bits = row
-                .iter()
-                .rev()
-                .fold(0, |bits, &v| bits << 1 | u16::from(v < 0.0));
+            let bits = row.iter().rev().fold(0, |bits, &v| bits << 1 | u16::from(v < 0.0));
             rows[n / 9][n % 9] = bits;
         }
         Self(rows)
@@ -99,12 +96,7 @@ impl Index {
         }
         // a triangle may stand on points of other bricks alone
         let used = points > 0 || triangles > 0;
-        used.then_some(Self {
-            brick,
-            tags,
-            points,
-            triangles,
-        })
+        used.then_some(Self { brick, tags, points, triangles })
     }
 
     /// The number within the brick of the point on an edge from a sample; from axis 3 on it is
@@ -136,10 +128,7 @@ impl<'a> Surface<'a> {
             let brick = bricks.place(n);
             Ok(Closed::gather(bricks, brick, 0).and_then(|b| Index::new(brick, &b, &counts)))
         };
-        let indices = candidates(bricks, 0)
-            .par_iter()
-            .map(index)
-            .collect::<Result<Vec<_>, _>>()?;
+        let indices = candidates(bricks, 0).par_iter().map(index).collect::<Result<Vec<_>, _>>()?;
         let indices: Vec<Index> = indices.into_iter().flatten().collect();
         let mut found = vec![u32::MAX; bricks.bricks.len()];
         let (mut starts, mut next) = (Vec::with_capacity(indices.len()), 0u32);
@@ -148,22 +137,14 @@ impl<'a> Surface<'a> {
             starts.push(next);
             next = next.wrapping_add(index.points);
         }
-        Ok(Self {
-            bricks,
-            indices,
-            starts,
-            found,
-        })
+        Ok(Self { bricks, indices, starts, found })
     }
 
     /// A mesh with all its points and faces, at zero.
     pub(super) fn blank(&self) -> TriMesh {
         let total = |of: fn(&Index) -> u32| self.indices.iter().map(|i| of(i) as usize).sum();
         let points = vec![DVec3::ZERO; total(|i| i.points)];
-        TriMesh {
-            points,
-            faces: vec![[0; 3]; total(|i| i.triangles)],
-        }
+        TriMesh { points, faces: vec![[0; 3]; total(|i| i.triangles)] }
     }
 
     /// The parts that the bricks own of a list of one entry a point.
@@ -200,14 +181,7 @@ impl<'a> Surface<'a> {
         for at in cells() {
             let config = signs.config(at);
             if config != 0 && config != 255 {
-                each(
-                    &Cell {
-                        at,
-                        planes: &planes,
-                        values: values(&block, at),
-                    },
-                    config,
-                );
+                each(&Cell { at, planes: &planes, values: values(&block, at) }, config);
             }
         }
     }
@@ -218,11 +192,7 @@ impl<'a> Surface<'a> {
         let (index, start) = self.index(cell.map(|i| i / 8))?;
         let sample = cell.iter().rev().fold(0, |n, i| 8 * n + (i % 8) as usize);
         let first = index.point(sample, 3);
-        let after = if sample < 511 {
-            index.point(sample + 1, 0)
-        } else {
-            index.points
-        };
+        let after = if sample < 511 { index.point(sample + 1, 0) } else { index.points };
         (after == first + 1).then_some(start + first)
     }
 }

@@ -36,9 +36,7 @@ impl Patches {
     /// The loops, each of three or more edges.
     pub(super) fn loops(&self) -> impl Iterator<Item = &[Edge]> {
         let starts = std::iter::once(&0).chain(&self.ends);
-        starts
-            .zip(&self.ends)
-            .map(|(&from, &to)| &self.edges[from..to])
+        starts.zip(&self.ends).map(|(&from, &to)| &self.edges[from..to])
     }
 
     /// Number of loops.
@@ -75,10 +73,7 @@ const EDGES: [Edge; 12] = {
     while n < 12 {
         let axis = (n / 4) as u8;
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        edges[n] = Edge {
-            axis,
-            corner: ((n & 1) << u | (n >> 1 & 1) << v) as u8,
-        };
+        edges[n] = Edge { axis, corner: ((n & 1) << u | (n >> 1 & 1) << v) as u8 };
         n += 1;
     }
     edges
@@ -100,9 +95,7 @@ fn faces() -> [[u8; 4]; 6] {
 
 /// The index in [`EDGES`] of the edge between two corners.
 fn edge_between(a: u8, b: u8) -> Option<usize> {
-    EDGES
-        .iter()
-        .position(|e| (e.corner, e.end()) == (a.min(b), a.max(b)))
+    EDGES.iter().position(|e| (e.corner, e.end()) == (a.min(b), a.max(b)))
 }
 
 /// For every edge that the surface crosses, the next one of its loop.
@@ -167,10 +160,7 @@ mod tests {
             all.sort_unstable();
             let mut want: Vec<_> = EDGES.iter().filter(|&&e| crossed(config, e)).collect();
             want.sort_unstable_by_key(|e| (e.axis, e.corner));
-            assert_eq!(
-                all,
-                want.iter().map(|e| (e.axis, e.corner)).collect::<Vec<_>>()
-            );
+            assert_eq!(all, want.iter().map(|e| (e.axis, e.corner)).collect::<Vec<_>>());
             assert!(p.loops().all(|l| (3..=12).contains(&l.len())) && p.count() <= 4);
         }
         assert_eq!(PATCHES[0b0110_1001].count(), 4);
@@ -183,9 +173,7 @@ mod tests {
             let [low, high] = [faces()[2 * axis], faces()[2 * axis + 1]];
             for a in 0..256 {
                 for b in 0..256 {
-                    let same = high
-                        .iter()
-                        .all(|&c| (a >> c & 1) == (b >> (c ^ 1 << axis) & 1));
+                    let same = high.iter().all(|&c| (a >> c & 1) == (b >> (c ^ 1 << axis) & 1));
                     if same {
                         let mine = segments(a, high);
                         let theirs: BTreeSet<_> = segments(b, low)

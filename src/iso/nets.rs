@@ -69,12 +69,7 @@ impl<'a> Nets<'a> {
             starts.push(next);
             next += net.points.len() as u32;
         }
-        Self {
-            bricks,
-            nets,
-            starts,
-            found,
-        }
+        Self { bricks, nets, starts, found }
     }
 
     /// The mesh's point in a cell of the chunk of a brick.
@@ -85,9 +80,7 @@ impl<'a> Nets<'a> {
         let slot = at.iter().rev().fold(0, |n, i| 8 * n + (i % 8) as usize);
         let owner = self.found.get(self.bricks.index(at.map(|n| n / 8)));
         let owner = owner.map_or(usize::MAX, |&n| n as usize);
-        self.nets
-            .get(owner)
-            .map_or(0, |net| self.starts[owner] + u32::from(net.cells[slot]))
+        self.nets.get(owner).map_or(0, |net| self.starts[owner] + u32::from(net.cells[slot]))
     }
 }
 
@@ -100,19 +93,10 @@ impl Net {
     ) -> Self {
         // an infinity beside a crossing would make its position NaN
         for v in &mut chunk.samples {
-            *v = if v.is_nan() {
-                1e30
-            } else {
-                v.clamp(-1e30, 1e30)
-            };
+            *v = if v.is_nan() { 1e30 } else { v.clamp(-1e30, 1e30) };
         }
         surface_nets(&chunk.samples, &Shape {}, [0; 3], [9; 3], buffer);
-        let mut net = Self {
-            brick,
-            points: vec![],
-            cells: Box::new([NONE; 512]),
-            faces: vec![],
-        };
+        let mut net = Self { brick, points: vec![], cells: Box::new([NONE; 512]), faces: vec![] };
         let lo = first(brick);
         for (at, p) in buffer.surface_points.iter().zip(&buffer.positions) {
             if at.iter().all(|&n| n > 0) {
@@ -120,17 +104,13 @@ impl Net {
                 net.cells[x + 8 * y + 64 * z] = net.points.len() as u16;
                 let share = |a: usize| lo[a] as f64 - 1.0 + f64::from(p[a]);
                 let p = DVec3::new(share(0), share(1), share(2));
-                net.points.push(
-                    (bricks.lattice.origin + bricks.lattice.step * p)
-                        .as_vec3()
-                        .as_dvec3(),
-                );
+                net.points
+                    .push((bricks.lattice.origin + bricks.lattice.step * p).as_vec3().as_dvec3());
             }
         }
         let cell = |n: u32| buffer.surface_strides[n as usize] as u16;
         let faces = buffer.indices.chunks_exact(3);
-        net.faces
-            .extend(faces.map(|f| [cell(f[0]), cell(f[1]), cell(f[2])]));
+        net.faces.extend(faces.map(|f| [cell(f[0]), cell(f[1]), cell(f[2])]));
         net
     }
 }

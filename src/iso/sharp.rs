@@ -48,38 +48,25 @@ pub(super) fn extract(
     let finished = AtomicUsize::new(0);
     let parts = surface.points_of(&mut mesh.points).into_iter();
     let parts: Vec<_> = parts.zip(surface.points_of(&mut normals)).collect();
-    parts
-        .into_par_iter()
-        .enumerate()
-        .try_for_each(|(n, (points, normals))| {
-            check(job)?;
-            find_crossings(&surface, n, f, points, normals);
-            job.done(
-                finished.fetch_add(1, Ordering::Relaxed) as f64 / surface.indices.len() as f64,
-            );
-            Ok(())
-        })?;
+    parts.into_par_iter().enumerate().try_for_each(|(n, (points, normals))| {
+        check(job)?;
+        find_crossings(&surface, n, f, points, normals);
+        job.done(finished.fetch_add(1, Ordering::Relaxed) as f64 / surface.indices.len() as f64);
+        Ok(())
+    })?;
 
-    let known = Known {
-        f,
-        surface: &surface,
-        points: &mesh.points,
-        normals: &normals,
-    };
+    let known = Known { f, surface: &surface, points: &mesh.points, normals: &normals };
     let apexes = (0..surface.indices.len()).into_par_iter().map(|n| {
         check(job)?;
         Ok(known.apexes(n))
     });
     let apexes = apexes.collect::<Result<Vec<_>, Cancelled>>()?;
     let faces: Vec<_> = surface.faces_of(&mut mesh.faces);
-    faces
-        .into_par_iter()
-        .enumerate()
-        .try_for_each(|(n, faces)| {
-            check(job)?;
-            known.faces(n, faces);
-            Ok(())
-        })?;
+    faces.into_par_iter().enumerate().try_for_each(|(n, faces)| {
+        check(job)?;
+        known.faces(n, faces);
+        Ok(())
+    })?;
     for (points, apexes) in surface.points_of(&mut mesh.points).into_iter().zip(apexes) {
         for (n, p) in apexes {
             points[n] = p;
@@ -117,10 +104,7 @@ impl Crossing {
     /// Takes the value at the guess for an end. An end that stays twice counts half (the Illinois
     /// rule), lest it stay for ever.
     fn narrow(&mut self, value: f64) {
-        let (share, end) = (
-            self.guess(),
-            usize::from((value < 0.0) != (self.value[0] < 0.0)),
-        );
+        let (share, end) = (self.guess(), usize::from((value < 0.0) != (self.value[0] < 0.0)));
         self.share[end] = share;
         self.value[end] = value;
         if self.moved == Some(end) {
@@ -214,9 +198,8 @@ impl Known<'_> {
 
     fn apex(&self, cell: &Cell, edges: &[Edge], beside: &Beside, only: bool) -> DVec3 {
         let ids = edges.iter().map(|&e| beside.point(cell.at, e) as usize);
-        let (mut points, mut normals): (Vec<DVec3>, Vec<DVec3>) = ids
-            .map(|id| (self.points[id], self.normals[id].as_dvec3()))
-            .unzip();
+        let (mut points, mut normals): (Vec<DVec3>, Vec<DVec3>) =
+            ids.map(|id| (self.points[id], self.normals[id].as_dvec3())).unzip();
         let mean = points.iter().sum::<DVec3>() / points.len() as f64;
         if !only {
             return cell.position(cell.share(mean));
@@ -255,11 +238,8 @@ impl Known<'_> {
                 for (a, b) in edges.iter().zip(edges.iter().cycle().skip(1)) {
                     let ids = [a, b].map(|&e| beside.point(cell.at, e));
                     let only = patches.count() == 1;
-                    let across = if only {
-                        self.across(n, cell, config, [*a, *b], ids)
-                    } else {
-                        None
-                    };
+                    let across =
+                        if only { self.across(n, cell, config, [*a, *b], ids) } else { None };
                     if let Some(slot) = faces.next() {
                         *slot = [next, ids[0], across.unwrap_or(ids[1])];
                     }
@@ -287,11 +267,7 @@ impl Known<'_> {
         let (axis, high) = [0, 1, 2].iter().find_map(|&axis| {
             let side = |c: u8| c >> axis & 1;
             let high = side(corners[0][0]);
-            corners
-                .iter()
-                .flatten()
-                .all(|&c| side(c) == high)
-                .then_some((axis, high))
+            corners.iter().flatten().all(|&c| side(c) == high).then_some((axis, high))
         })?;
         if ambiguous(config, axis, high) {
             return None;

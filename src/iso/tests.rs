@@ -14,11 +14,7 @@ use shape::{Shape, root};
 
 fn lattice(size: u32, step: f64) -> Lattice {
     let half = f64::from(size - 1) * step * 0.5;
-    Lattice {
-        origin: DVec3::new(1000.017, -500.3, 20.0) - half,
-        step,
-        size: [size; 3],
-    }
+    Lattice { origin: DVec3::new(1000.017, -500.3, 20.0) - half, step, size: [size; 3] }
 }
 
 fn bricks_of(lattice: Lattice, mut value: impl FnMut([u32; 3]) -> f32) -> Bricks<f32> {
@@ -109,11 +105,7 @@ fn components_are_those_of_the_samples() {
         assert_eq!(Shape::of(&cone(&bricks)).components, inside + outside - 1);
     }
     let on = covering(20.0, 0.8);
-    let apart = sample(
-        &Csg(vec![ball(-9.0, 0.0, 0.0, 6.0), ball(9.0, 1.0, 0.0, 7.0)]),
-        on,
-        &Quiet,
-    );
+    let apart = sample(&Csg(vec![ball(-9.0, 0.0, 0.0, 6.0), ball(9.0, 1.0, 0.0, 7.0)]), on, &Quiet);
     let bricks = apart.unwrap().bricks;
     assert_eq!(Shape::of(&cone(&bricks)).components, 2);
 }
@@ -148,11 +140,7 @@ fn a_ball_converges_with_order_two() {
     for mesher in [Mesher::Cone, Mesher::SurfaceNets] {
         let errors = [1.0, 0.5, 0.25].map(|step| {
             let mesh = meshed(&f, covering(12.0, step), mesher);
-            let far = mesh
-                .points
-                .iter()
-                .map(|&p| f.value(p).abs())
-                .fold(0.0, f64::max);
+            let far = mesh.points.iter().map(|&p| f.value(p).abs()).fold(0.0, f64::max);
             assert!(mesh.volume() < exact);
             // the sagitta of a chord over the diagonal of a cell
             assert!(far < 3.0 * step * step / 80.0 * 2.0, "{far}");
@@ -186,10 +174,7 @@ fn the_border_is_closed() {
         for mesher in [Mesher::Cone, Mesher::SurfaceNets] {
             let mesh = extract(&bricks, mesher, &Quiet).unwrap();
             let shape = Shape::of(&mesh);
-            assert!(
-                shape.sound() && shape.components == 1 && shape.euler == 2,
-                "{shape:?}"
-            );
+            assert!(shape.sound() && shape.components == 1 && shape.euler == 2, "{shape:?}");
             let b = bricks.lattice.bounds().grow(1e-4);
             assert!(mesh.points.iter().all(|&p| b.contains(p)) && mesh.volume() > 0.0);
         }
@@ -200,25 +185,10 @@ fn the_border_is_closed() {
 #[test]
 fn odd_bricks_give_a_sound_mesh() {
     let mut random = Random(7);
-    let odd = [
-        f32::NAN,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        0.0,
-        -0.0,
-        -1.0,
-        1.0,
-        -1e-40,
-    ];
-    let mut bricks = bricks_of(lattice(20, 0.7), |_| {
-        odd[(random.next() * 4.0 + 4.0) as usize]
-    });
+    let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -0.0, -1.0, 1.0, -1e-40];
+    let mut bricks = bricks_of(lattice(20, 0.7), |_| odd[(random.next() * 4.0 + 4.0) as usize]);
     for n in [0, 3, 7, 13, 20] {
-        bricks.bricks[n] = if n % 2 == 0 {
-            Brick::Outside
-        } else {
-            Brick::Inside
-        };
+        bricks.bricks[n] = if n % 2 == 0 { Brick::Outside } else { Brick::Inside };
     }
     let shape = Shape::of(&cone(&bricks));
     assert!(shape.sound(), "{shape:?}");
@@ -244,18 +214,12 @@ fn nothing_inside_gives_an_empty_mesh() {
 #[test]
 fn faces_on_samples_stay_flat() {
     let bricks = bricks_of(lattice(12, 1.0), |at| {
-        at.iter()
-            .map(|&i| (f64::from(i) - 5.0).abs() - 3.0)
-            .fold(-9.0, f64::max) as f32
+        at.iter().map(|&i| (f64::from(i) - 5.0).abs() - 3.0).fold(-9.0, f64::max) as f32
     });
     let mesh = cone(&bricks);
     let centre = bricks.lattice.point(5, 5, 5);
     assert!(Shape::of(&mesh).sound());
-    assert!(
-        mesh.points
-            .iter()
-            .all(|&p| (p - centre).abs().max_element() < 3.0)
-    );
+    assert!(mesh.points.iter().all(|&p| (p - centre).abs().max_element() < 3.0));
     let flat = |p: &&DVec3| ((**p - centre).abs().max_element() - 2.999).abs() < 1e-3;
     // all but the apexes at edges and corners
     let share = mesh.points.iter().filter(flat).count() as f64 / mesh.points.len() as f64;
@@ -267,10 +231,7 @@ fn the_same_on_any_number_of_threads() {
     let f = gyroid(9.0, 19.0);
     let on = covering(20.0, 0.7);
     let run = |threads, mesher| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| meshed(&f, on, mesher))
     };
     for mesher in [Mesher::Cone, Mesher::SurfaceNets] {

@@ -32,11 +32,7 @@ impl<'a> Edges<'a> {
         for w in starts.windows(2) {
             spans[w[0]..w[1]].sort_unstable();
         }
-        Self {
-            mesh,
-            starts,
-            spans,
-        }
+        Self { mesh, starts, spans }
     }
 
     /// Calls back with each edge: lower end, higher end, its faces as [`face`] reads them. A face
@@ -60,10 +56,7 @@ impl<'a> Edges<'a> {
         let mut parent: Vec<u32> = (0..self.mesh.faces.len() as u32).collect();
         self.each(|_, _, faces| {
             for &other in &faces[1..] {
-                let (a, b) = (
-                    root(&mut parent, face(faces[0])),
-                    root(&mut parent, face(other)),
-                );
+                let (a, b) = (root(&mut parent, face(faces[0])), root(&mut parent, face(other)));
                 // The lower number wins, so a root is the first face of its shell.
                 parent[a.max(b)] = a.min(b) as u32;
             }
@@ -119,24 +112,14 @@ mod tests {
 
     #[test]
     fn every_edge_once_with_all_its_faces() {
-        let mesh = TriMesh {
-            points: vec![DVec3::ZERO; 5],
-            faces: vec![[0, 1, 2], [1, 0, 3], [0, 1, 4]],
-        };
+        let mesh =
+            TriMesh { points: vec![DVec3::ZERO; 5], faces: vec![[0, 1, 2], [1, 0, 3], [0, 1, 4]] };
         let edges = Edges::of(&mesh);
         let mut seen = vec![];
         edges.each(|lo, hi, faces| seen.push((lo, hi, faces.len())));
         assert_eq!(
             seen,
-            [
-                (0, 1, 3),
-                (0, 2, 1),
-                (0, 3, 1),
-                (0, 4, 1),
-                (1, 2, 1),
-                (1, 3, 1),
-                (1, 4, 1)
-            ]
+            [(0, 1, 3), (0, 2, 1), (0, 3, 1), (0, 4, 1), (1, 2, 1), (1, 3, 1), (1, 4, 1)]
         );
         assert!(edges.runs(0, 0, 1) && !edges.runs(1, 0, 1));
     }

@@ -76,8 +76,5 @@ pub(super) type Parsed<T> = Result<T, Fault>;
 
 /// `Err` with a place and a cause.
 pub(super) fn fault<T>(place: impl Into<String>, why: impl Into<String>) -> Parsed<T> {
-    Err(Fault {
-        place: place.into(),
-        why: why.into(),
-    })
+    Err(Fault { place: place.into(), why: why.into() })
 }

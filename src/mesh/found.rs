@@ -62,10 +62,7 @@ impl Found {
     /// What there is in a mesh, taken as a file of triangles.
     pub fn of(mesh: &TriMesh) -> Self {
         let (clean, counts) = welded(mesh);
-        let kinds = Polygons {
-            triangles: mesh.faces.len(),
-            ..Polygons::default()
-        };
+        let kinds = Polygons { triangles: mesh.faces.len(), ..Polygons::default() };
         Self::after(&clean, mesh.points.len(), kinds, counts)
     }
 
@@ -117,17 +114,12 @@ impl Found {
     /// two lowest points.
     fn count_twins(&mut self, mesh: &TriMesh, edges: &Edges, lo: u32, hi: u32, faces: &[u64]) {
         let third = |i: usize| mesh.faces[i].into_iter().find(|&v| v > hi);
-        let mut here: Vec<(u32, usize)> = faces
-            .iter()
-            .filter_map(|&e| third(face(e)).map(|v| (v, face(e))))
-            .collect();
+        let mut here: Vec<(u32, usize)> =
+            faces.iter().filter_map(|&e| third(face(e)).map(|v| (v, face(e)))).collect();
         here.sort_unstable();
         for same in here.chunk_by(|a, b| a.0 == b.0) {
             let forward = edges.runs(same[0].1, lo, hi);
-            let alike = same
-                .iter()
-                .filter(|s| edges.runs(s.1, lo, hi) == forward)
-                .count();
+            let alike = same.iter().filter(|s| edges.runs(s.1, lo, hi) == forward).count();
             self.duplicate += alike - 1;
             self.flipped += same.len() - alike;
         }
@@ -143,10 +135,7 @@ impl Found {
             part(self.concave, "concave"),
             part(self.tangled, "tangled"),
         ];
-        let corners = [self.triangles, self.quads, self.larger]
-            .iter()
-            .filter(|&&n| n > 0)
-            .count();
+        let corners = [self.triangles, self.quads, self.larger].iter().filter(|&&n| n > 0).count();
         let mut text = listed([
             if polygons == self.triangles {
                 None
@@ -171,10 +160,7 @@ impl Found {
             part(self.flipped, "flipped duplicate face"),
             part(self.open_edges, "open edge"),
             part(self.crowded_edges, "edge with more than two faces"),
-            part(
-                self.turned_edges,
-                "edge between faces that disagree in direction",
-            ),
+            part(self.turned_edges, "edge between faces that disagree in direction"),
         ]);
         if !odd.is_empty() {
             text += "\n";
@@ -194,10 +180,8 @@ impl fmt::Display for Found {
 /// times the rounding of the cross product.
 fn is_flat(mesh: &TriMesh, i: usize) -> bool {
     let [a, b, c] = mesh.corners(i);
-    let longest = (b - a)
-        .length_squared()
-        .max((c - b).length_squared())
-        .max((a - c).length_squared());
+    let longest =
+        (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
     (b - a).cross(c - a).length() <= 1e-12 * longest
 }
 
@@ -228,10 +212,7 @@ mod tests {
 
     /// A tetrahedron over the points 0, 1, 2, 4 of a cube.
     fn tetrahedron() -> TriMesh {
-        TriMesh {
-            points: corners(5),
-            faces: vec![[0, 2, 1], [0, 1, 4], [1, 2, 4], [2, 0, 4]],
-        }
+        TriMesh { points: corners(5), faces: vec![[0, 2, 1], [0, 1, 4], [1, 2, 4], [2, 0, 4]] }
     }
 
     #[test]
@@ -240,13 +221,7 @@ mod tests {
         assert_eq!(Found::of(&mesh).unreferenced, 1);
         mesh = crate::mesh::weld(&mesh);
         let found = Found::of(&mesh);
-        let clean = Found {
-            triangles: 4,
-            faces: 4,
-            points: 4,
-            shells: 1,
-            ..Found::default()
-        };
+        let clean = Found { triangles: 4, faces: 4, points: 4, shells: 1, ..Found::default() };
         assert_eq!(found, clean);
         assert_eq!(found.summary(), "4 triangles, 4 points, 1 shell");
     }
@@ -267,10 +242,7 @@ mod tests {
         mesh.points.push(DVec3::new(0.5, 0.0, 0.0));
         mesh.faces.push([0, 13, 1]); // on a line
         let found = Found::of(&mesh);
-        assert_eq!(
-            (found.degenerate, found.duplicate, found.flipped),
-            (2, 1, 1)
-        );
+        assert_eq!((found.degenerate, found.duplicate, found.flipped), (2, 1, 1));
         // 4 sides of the two added triangles... of the quad only [5,7] and [6,7] are open, and
         // the flat triangle's two.
         assert_eq!(found.open_edges, 4);

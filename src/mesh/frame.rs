@@ -91,11 +91,7 @@ impl FromStr for Up {
         match s.to_ascii_lowercase().as_str() {
             "y" => Ok(Up::Y),
             "z" => Ok(Up::Z),
-            _ => Err(UnknownWord {
-                what: "up axis",
-                got: s.into(),
-                expected: "y or z",
-            }),
+            _ => Err(UnknownWord { what: "up axis", got: s.into(), expected: "y or z" }),
         }
     }
 }
@@ -109,11 +105,7 @@ impl FromStr for Unit {
             "cm" => Ok(Unit::Cm),
             "mm" => Ok(Unit::Mm),
             "in" => Ok(Unit::In),
-            _ => Err(UnknownWord {
-                what: "unit",
-                got: s.into(),
-                expected: "m, cm, mm or in",
-            }),
+            _ => Err(UnknownWord { what: "unit", got: s.into(), expected: "m, cm, mm or in" }),
         }
     }
 }
@@ -139,9 +131,6 @@ mod tests {
 
     #[test]
     fn y_up_stands_up() {
-        assert_eq!(
-            Up::Y.to_z(DVec3::new(1.0, 2.0, 3.0)),
-            DVec3::new(1.0, -3.0, 2.0)
-        );
+        assert_eq!(Up::Y.to_z(DVec3::new(1.0, 2.0, 3.0)), DVec3::new(1.0, -3.0, 2.0));
     }
 }

@@ -62,12 +62,7 @@ impl TriMesh {
 
     /// The box round all points that a face uses; empty for a mesh without faces.
     pub fn bounds(&self) -> Aabb {
-        Aabb::of(
-            self.faces
-                .iter()
-                .flatten()
-                .map(|&v| self.points[v as usize]),
-        )
+        Aabb::of(self.faces.iter().flatten().map(|&v| self.points[v as usize]))
     }
 
     /// Half the cross product of two edges of face `i`: its normal, as long as its area (mm²).
@@ -78,9 +73,7 @@ impl TriMesh {
 
     /// Total area in mm².
     pub fn area(&self) -> f64 {
-        (0..self.faces.len())
-            .map(|i| self.area_vector(i).length())
-            .sum()
+        (0..self.faces.len()).map(|i| self.area_vector(i).length()).sum()
     }
 
     /// Signed volume in mm³ by the divergence theorem; meaningful for a closed mesh.
@@ -115,7 +108,6 @@ impl TriMesh {
     pub fn append(&mut self, other: &TriMesh) {
         let shift = self.points.len() as u32;
         self.points.extend_from_slice(&other.points);
-        self.faces
-            .extend(other.faces.iter().map(|f| f.map(|v| v + shift)));
+        self.faces.extend(other.faces.iter().map(|f| f.map(|v| v + shift)));
     }
 }

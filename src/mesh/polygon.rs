@@ -53,9 +53,7 @@ fn flatten(ring: &[DVec3]) -> Vec<DVec2> {
     let n = sum.try_normalize().unwrap_or(DVec3::Z);
     let u = n.any_orthonormal_vector();
     let v = n.cross(u);
-    ring.iter()
-        .map(|&p| DVec2::new((p - o).dot(u), (p - o).dot(v)))
-        .collect()
+    ring.iter().map(|&p| DVec2::new((p - o).dot(u), (p - o).dot(v))).collect()
 }
 
 /// Twice the signed area of a, b, c; its sign is exact.
@@ -170,11 +168,7 @@ impl Ring<'_> {
             return enters(self.p[self.next[q]]) || enters(self.p[self.prev[q]]);
         }
         let t = turn(a, b, here).min(turn(b, c, here)).min(turn(c, a, here));
-        if care == Care::Clear {
-            t >= 0.0
-        } else {
-            t > 0.0
-        }
+        if care == Care::Clear { t >= 0.0 } else { t > 0.0 }
     }
 }
 
@@ -191,24 +185,16 @@ mod tests {
 
     fn areas(ring: &[DVec3], faces: &[[u32; 3]]) -> Vec<DVec3> {
         let at = |v: u32| ring[v as usize];
-        faces
-            .iter()
-            .map(|f| (at(f[1]) - at(f[0])).cross(at(f[2]) - at(f[0])) * 0.5)
-            .collect()
+        faces.iter().map(|f| (at(f[1]) - at(f[0])).cross(at(f[2]) - at(f[0])) * 0.5).collect()
     }
 
     /// As given, clockwise, started at each corner, and on tilted planes: n - 2 triangles that turn
     /// as the ring does and whose areas sum to `area`.
     fn tiles(shape: &[[f64; 2]], area: f64) {
-        for tilt in [
-            DQuat::IDENTITY,
-            DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 2.0, 1.1),
-        ] {
+        for tilt in [DQuat::IDENTITY, DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 2.0, 1.1)] {
             for start in 0..shape.len() {
-                let mut ring: Vec<DVec3> = shape
-                    .iter()
-                    .map(|p| tilt * DVec3::new(p[0] + 7.0, p[1] - 3.0, 5.0))
-                    .collect();
+                let mut ring: Vec<DVec3> =
+                    shape.iter().map(|p| tilt * DVec3::new(p[0] + 7.0, p[1] - 3.0, 5.0)).collect();
                 ring.rotate_left(start);
                 for sign in [1.0, -1.0] {
                     let (_, faces) = cut(&ring);
@@ -216,14 +202,8 @@ mod tests {
                     let normal = tilt * DVec3::Z * sign;
                     let parts = areas(&ring, &faces);
                     let total: f64 = parts.iter().map(|a| a.length()).sum();
-                    assert!(
-                        (total - area).abs() < 1e-12 * area.max(1.0),
-                        "{total} for {area}"
-                    );
-                    assert!(
-                        parts.iter().all(|a| a.dot(normal) >= -1e-12),
-                        "a piece is turned"
-                    );
+                    assert!((total - area).abs() < 1e-12 * area.max(1.0), "{total} for {area}");
+                    assert!(parts.iter().all(|a| a.dot(normal) >= -1e-12), "a piece is turned");
                     ring.reverse();
                 }
             }
@@ -280,16 +260,7 @@ mod tests {
     #[test]
     fn flat_corners_make_no_empty_triangle() {
         // A square with a corner in the middle of each side.
-        let ring = [
-            [0., 0.],
-            [1., 0.],
-            [2., 0.],
-            [2., 1.],
-            [2., 2.],
-            [1., 2.],
-            [0., 2.],
-            [0., 1.],
-        ];
+        let ring = [[0., 0.], [1., 0.], [2., 0.], [2., 1.], [2., 2.], [1., 2.], [0., 2.], [0., 1.]];
         tiles(&ring, 4.0);
         let ring = ring.map(|p| DVec3::new(p[0], p[1], 0.0));
         let (_, faces) = cut(&ring);
@@ -300,10 +271,7 @@ mod tests {
     fn convex_is_a_fan_and_a_pentagram_is_tangled() {
         let at = |deg: f64| DVec3::new(deg.to_radians().cos(), deg.to_radians().sin(), 0.0);
         let pentagon = [0., 72., 144., 216., 288.].map(at);
-        assert_eq!(
-            cut(&pentagon),
-            (Cut::Convex, vec![[0, 1, 2], [0, 2, 3], [0, 3, 4]])
-        );
+        assert_eq!(cut(&pentagon), (Cut::Convex, vec![[0, 1, 2], [0, 2, 3], [0, 3, 4]]));
         let pentagram = [0., 144., 288., 72., 216.].map(at);
         let (kind, faces) = cut(&pentagram);
         assert_eq!((kind, faces.len()), (Cut::Tangled, 3));

@@ -44,12 +44,7 @@ impl Soup {
     /// Refuses corners that are no points, and points that are used but no numbers (or, in units
     /// of `mm`, too large for f32).
     pub fn check(&self, mm: f64) -> Parsed<()> {
-        let sound = |p: DVec3| {
-            (p * mm)
-                .abs()
-                .cmple(DVec3::splat(f64::from(f32::MAX)))
-                .all()
-        };
+        let sound = |p: DVec3| (p * mm).abs().cmple(DVec3::splat(f64::from(f32::MAX))).all();
         let bad = |&v: &u32| self.points.get(v as usize).is_none_or(|&p| !sound(p));
         for (i, ring) in self.rings().enumerate() {
             let Some(&v) = ring.iter().find(|v| bad(v)) else {
@@ -59,21 +54,11 @@ impl Soup {
             let face = place("face", i as u64 + self.first, self.lines.get(i));
             let Some(p) = self.points.get(v as usize) else {
                 let count = self.points.len();
-                return fault(
-                    face,
-                    format!("point {number}, but there are {count} points"),
-                );
+                return fault(face, format!("point {number}, but there are {count} points"));
             };
             let at = place("point", number, self.point_lines.get(v as usize));
-            let what = if p.is_finite() {
-                "beyond the range of f32"
-            } else {
-                "not finite"
-            };
-            return fault(
-                at,
-                format!("({}, {}, {}) is {what}, and used by {face}", p.x, p.y, p.z),
-            );
+            let what = if p.is_finite() { "beyond the range of f32" } else { "not finite" };
+            return fault(at, format!("({}, {}, {}) is {what}, and used by {face}", p.x, p.y, p.z));
         }
         Ok(())
     }

@@ -49,12 +49,7 @@ pub(super) fn welded(mesh: &TriMesh) -> (TriMesh, Welding) {
         }
     }
     let mut faces = Vec::with_capacity(mesh.faces.len());
-    faces.extend(
-        mesh.faces
-            .iter()
-            .map(|f| f.map(|v| new[v as usize]))
-            .filter(has_three),
-    );
+    faces.extend(mesh.faces.iter().map(|f| f.map(|v| new[v as usize])).filter(has_three));
     counts.collapsed = mesh.faces.len() - faces.len();
     (TriMesh { points, faces }, counts)
 }
@@ -93,9 +88,7 @@ fn bits(p: DVec3) -> [u64; 3] {
 fn hash(bits: [u64; 3]) -> u64 {
     bits.iter().fold(0, |h, b| {
         let x = (h ^ b).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        (x ^ (x >> 32))
-            .wrapping_mul(0xD6E8_FEB8_6659_FD93)
-            .rotate_left(23)
+        (x ^ (x >> 32)).wrapping_mul(0xD6E8_FEB8_6659_FD93).rotate_left(23)
     })
 }
 
@@ -119,28 +112,15 @@ mod tests {
             faces: vec![[1, 2, 3], [4, 5, 6], [1, 4, 2]],
         };
         let (mesh, counts) = welded(&soup);
-        assert_eq!(
-            mesh.points,
-            vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)]
-        );
+        assert_eq!(mesh.points, vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)]);
         assert_eq!(mesh.faces, vec![[0, 1, 2], [0, 2, 3]]);
-        assert_eq!(
-            counts,
-            Welding {
-                unreferenced: 1,
-                merged: 2,
-                collapsed: 1
-            }
-        );
+        assert_eq!(counts, Welding { unreferenced: 1, merged: 2, collapsed: 1 });
         assert_eq!(weld(&mesh), mesh);
     }
 
     #[test]
     fn snapping_is_idempotent_and_has_no_negative_zero() {
-        let mut mesh = TriMesh {
-            points: vec![DVec3::new(0.1, -0.0, -1e-60)],
-            faces: vec![],
-        };
+        let mut mesh = TriMesh { points: vec![DVec3::new(0.1, -0.0, -1e-60)], faces: vec![] };
         snap(&mut mesh);
         let once = mesh.clone();
         assert_eq!(mesh.points[0].x, f64::from(0.1f32));

@@ -37,16 +37,8 @@ mod tests {
 
     #[test]
     fn holds_every_combination_and_is_reached() {
-        let w = [
-            Interval::new(0.1, 0.5),
-            Interval::new(0.2, 0.9),
-            Interval::new(0.0, 0.3),
-        ];
-        let x = [
-            Interval::new(-1.0, 2.0),
-            Interval::new(0.5, 0.75),
-            Interval::new(3.0, 4.0),
-        ];
+        let w = [Interval::new(0.1, 0.5), Interval::new(0.2, 0.9), Interval::new(0.0, 0.3)];
+        let x = [Interval::new(-1.0, 2.0), Interval::new(0.5, 0.75), Interval::new(3.0, 4.0)];
         let f = combine(&w, &x, &mut Vec::new());
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for i in 0..=40 {

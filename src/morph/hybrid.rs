@@ -69,8 +69,7 @@ impl Hybrid {
             for (d, f) in out.d[row.clone()].iter_mut().zip(&self.features) {
                 *d = f.gauge.distance(p);
             }
-            self.weighting
-                .weigh(&out.d[row.clone()], &mut out.w[row.clone()]);
+            self.weighting.weigh(&out.d[row.clone()], &mut out.w[row.clone()]);
             if sharp {
                 self.sharp.weigh(&out.d[row.clone()], &mut out.sharp[row]);
             }
@@ -93,21 +92,13 @@ impl Hybrid {
             } else {
                 let w = &out.sharp[r * n..(r + 1) * n];
                 for (j, l) in row.iter_mut().enumerate() {
-                    *l = w
-                        .iter()
-                        .zip(&self.features)
-                        .map(|(w, f)| w * f.lam[j])
-                        .sum();
+                    *l = w.iter().zip(&self.features).map(|(w, f)| w * f.lam[j]).sum();
                 }
             }
         }
         for (j, shape) in self.shapes.iter().enumerate() {
             for (r, (y, &p)) in y.iter_mut().zip(at).enumerate() {
-                *y = if n == 0 {
-                    p
-                } else {
-                    self.blended(j, p, &out.w[r * n..(r + 1) * n])
-                };
+                *y = if n == 0 { p } else { self.blended(j, p, &out.w[r * n..(r + 1) * n]) };
             }
             shape.values(&y, &mut g);
             for (r, &g) in g.iter().enumerate() {
@@ -133,10 +124,7 @@ impl Hybrid {
             return self.local;
         }
         let sum = |get: fn(&Local) -> f64| -> f64 {
-            w.iter()
-                .zip(&self.features)
-                .map(|(w, f)| w * get(&f.local))
-                .sum()
+            w.iter().zip(&self.features).map(|(w, f)| w * get(&f.local)).sum()
         };
         Local {
             reach: sum(|l| l.reach),
@@ -158,9 +146,7 @@ impl Hybrid {
             } else {
                 (&[][..], &[][..])
             };
-            *f = self
-                .mix
-                .value(&l.g[row.clone()], &l.lam[row], &self.local(w));
+            *f = self.mix.value(&l.g[row.clone()], &l.lam[row], &self.local(w));
             for (i, p) in self.features.iter().enumerate() {
                 *f -= l.w[r * n + i] * offset(p.offset, d[i]);
             }
@@ -189,9 +175,7 @@ impl Hybrid {
             for (r, f) in out.iter_mut().enumerate() {
                 let w = l.w[r * n + i];
                 if w > 0.0 {
-                    let v = self
-                        .mix
-                        .value(&g[r * k..(r + 1) * k], &feature.lam, &feature.local);
+                    let v = self.mix.value(&g[r * k..(r + 1) * k], &feature.lam, &feature.local);
                     *f += w * (v - offset(feature.offset, l.d[r * n + i]));
                 }
             }
@@ -211,11 +195,7 @@ impl Hybrid {
         self.weighting.enclose(&d, &mut w);
         self.sharp.enclose(&d, &mut sharp);
         let convex = |x: &dyn Fn(&Placed) -> f64, order: &mut Vec<usize>| {
-            let x: Vec<_> = self
-                .features
-                .iter()
-                .map(|f| Interval::point(x(f)))
-                .collect();
+            let x: Vec<_> = self.features.iter().map(|f| Interval::point(x(f))).collect();
             combine(&sharp, &x, order)
         };
         let mut g = Vec::with_capacity(k);
@@ -230,21 +210,15 @@ impl Hybrid {
             apart: convex(&|f| f.local.apart, &mut order),
             level: convex(&|f| f.local.level, &mut order),
         };
-        let offsets: Vec<_> = self
-            .features
-            .iter()
-            .zip(&d)
-            .map(|(f, &d)| offset_range(f.offset, d))
-            .collect();
+        let offsets: Vec<_> =
+            self.features.iter().zip(&d).map(|(f, &d)| offset_range(f.offset, d)).collect();
         self.mix.bound(&g, &lam, &local, &mut order) - combine(&w, &offsets, &mut order)
     }
 
     /// A box that holds y_j(x) for every x in `b`: the image under the map of the feature that
     /// weighs most, plus what the others may pull away from it.
     fn image(&self, j: usize, b: &Aabb, w: &[Interval], order: &mut Vec<usize>) -> Aabb {
-        let main = (0..w.len())
-            .max_by(|&a, &c| w[a].hi.total_cmp(&w[c].hi))
-            .unwrap_or(0);
+        let main = (0..w.len()).max_by(|&a, &c| w[a].hi.total_cmp(&w[c].hi)).unwrap_or(0);
         let own = self.features[main].maps[j].image(b);
         let away: Vec<Aabb> = self
             .features
@@ -256,11 +230,7 @@ impl Hybrid {
                 .iter()
                 .enumerate()
                 .map(|(i, a)| {
-                    if i == main {
-                        Interval::point(0.0)
-                    } else {
-                        Interval::new(a.min[c], a.max[c])
-                    }
+                    if i == main { Interval::point(0.0) } else { Interval::new(a.min[c], a.max[c]) }
                 })
                 .collect();
             combine(w, &x, order)
@@ -285,12 +255,8 @@ impl Hybrid {
                 if w[i].hi <= 0.0 {
                     return Interval::point(0.0);
                 }
-                let g: Vec<_> = self
-                    .shapes
-                    .iter()
-                    .zip(&f.maps)
-                    .map(|(s, m)| s.bound(&m.image(b)))
-                    .collect();
+                let g: Vec<_> =
+                    self.shapes.iter().zip(&f.maps).map(|(s, m)| s.bound(&m.image(b))).collect();
                 let lam: Vec<_> = f.lam.iter().map(|&l| Interval::point(l)).collect();
                 let v = self.mix.bound(&g, &lam, &f.local.into(), &mut order);
                 v - offset_range(f.offset, d[i])

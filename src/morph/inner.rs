@@ -68,10 +68,7 @@ impl Mix {
             Self::Auto => {
                 let l = combine(lam, g, order) - at.level;
                 let u = grow_bound(g, lam, at.reach);
-                let w = [
-                    Interval::new(1.0 - at.apart.hi, 1.0 - at.apart.lo),
-                    at.apart,
-                ];
+                let w = [Interval::new(1.0 - at.apart.hi, 1.0 - at.apart.lo), at.apart];
                 combine(&w, &[l, u], order)
             }
         }
@@ -79,10 +76,7 @@ impl Mix {
 }
 
 fn linear(g: &[f64], lam: &[f64]) -> f64 {
-    g.iter()
-        .zip(lam)
-        .map(|(g, l)| if *l > 0.0 { g * l } else { 0.0 })
-        .sum()
+    g.iter().zip(lam).map(|(g, l)| if *l > 0.0 { g * l } else { 0.0 }).sum()
 }
 
 fn greatest(lam: &[f64]) -> f64 {
@@ -131,16 +125,9 @@ fn ratio(lam: &[Interval], i: usize) -> Interval {
     }
     // the greatest weight is at least the greatest lower end, and at least this very weight
     let least = if hi > 0.0 { mine.lo / hi } else { 0.0 };
-    let others = (0..lam.len())
-        .filter(|&j| j != i)
-        .map(|j| lam[j].hi)
-        .fold(0.0, f64::max);
+    let others = (0..lam.len()).filter(|&j| j != i).map(|j| lam[j].hi).fold(0.0, f64::max);
     let least = if mine.lo >= others { 1.0 } else { least };
-    let most = if lo > 0.0 {
-        (mine.hi / lo).min(1.0)
-    } else {
-        1.0
-    };
+    let most = if lo > 0.0 { (mine.hi / lo).min(1.0) } else { 1.0 };
     Interval::new(least.min(most), most)
 }
 
@@ -198,13 +185,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn mixes() -> Vec<Mix> {
-        let bounded = |form| Bounded {
-            form,
-            a0: 3.0,
-            a: vec![2.0, 3.0, 1.5],
-            a3: 1.2,
-            reach: 4.0,
-        };
+        let bounded = |form| Bounded { form, a0: 3.0, a: vec![2.0, 3.0, 1.5], a3: 1.2, reach: 4.0 };
         vec![
             Mix::Linear,
             Mix::SpaceTime(bounded(Form::L)),

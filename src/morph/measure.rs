@@ -51,16 +51,8 @@ fn local(g: &[f64], lam: &[f64]) -> Local {
         both += u64::from(inside == present.len());
         means.push(mean);
     }
-    let overlap = if either > 0 {
-        both as f64 / either as f64
-    } else {
-        1.0
-    };
-    let level = if present.len() > 1 {
-        level(&mut means, wanted)
-    } else {
-        0.0
-    };
+    let overlap = if either > 0 { both as f64 / either as f64 } else { 1.0 };
+    let level = if present.len() > 1 { level(&mut means, wanted) } else { 0.0 };
     Local {
         reach: (far * REACH_MARGIN).max(LEAST_REACH),
         depth: (depth * REACH_MARGIN).max(1.0),
@@ -108,12 +100,7 @@ pub(super) fn bounded(
         .chunks_exact(k)
         .zip(looked.lam.chunks_exact(k))
         .filter(|(g, l)| g.iter().zip(*l).any(|(g, l)| *l > 0.0 && *g < 0.0))
-        .map(|(g, l)| {
-            (0..k)
-                .filter(|&j| l[j] > 0.0)
-                .map(|j| g[j])
-                .fold(0.0, f64::max)
-        })
+        .map(|(g, l)| (0..k).filter(|&j| l[j] > 0.0).map(|j| g[j]).fold(0.0, f64::max))
         .fold(1.0, f64::max);
     let mut b = Bounded {
         form: want.form,
@@ -128,11 +115,7 @@ pub(super) fn bounded(
             let rows = looked.g.chunks_exact(k).zip(looked.lam.chunks_exact(k));
             let wanted: f64 = rows
                 .clone()
-                .flat_map(|(g, l)| {
-                    g.iter()
-                        .zip(l)
-                        .map(|(g, l)| if *g < 0.0 { *l } else { 0.0 })
-                })
+                .flat_map(|(g, l)| g.iter().zip(l).map(|(g, l)| if *g < 0.0 { *l } else { 0.0 }))
                 .sum();
             let samples: Vec<_> = rows.map(|(g, l)| b.parts(g, l)).collect();
             height_for_volume(&samples, wanted, HEIGHT_CAP * reach)

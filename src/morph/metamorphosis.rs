@@ -15,12 +15,7 @@ pub(super) struct Metamorphosis {
     plan: Plan,
 }
 
-const UNMEASURED: Local = Local {
-    reach: 0.0,
-    depth: 0.0,
-    apart: 1.0,
-    level: 0.0,
-};
+const UNMEASURED: Local = Local { reach: 0.0, depth: 0.0, apart: 1.0, level: 0.0 };
 
 impl Metamorphosis {
     pub fn new(plan: Plan) -> Result<Self, MorphError> {
@@ -36,20 +31,11 @@ impl Metamorphosis {
         for f in &plan.features {
             if f.elements.len() != k {
                 let (feature, got) = (f.name.clone(), f.elements.len());
-                return Err(MorphError::Unpaired {
-                    feature,
-                    got,
-                    shapes: k,
-                });
+                return Err(MorphError::Unpaired { feature, got, shapes: k });
             }
             check_course(&f.morph, k, &f.name)?;
             check_course(&f.deform, k, &f.name)?;
-            positive(
-                f.offset.is_finite(),
-                "offset",
-                "a finite number of mm",
-                f.offset,
-            )?;
+            positive(f.offset.is_finite(), "offset", "a finite number of mm", f.offset)?;
         }
         if let Frames::Of(j) = plan.frames {
             positive(j < k, "frames", "the index of a shape", j as f64)?;
@@ -120,16 +106,8 @@ impl Morph for Metamorphosis {
     }
 
     fn domain(&self) -> Aabb {
-        let shapes = self
-            .plan
-            .shapes
-            .iter()
-            .fold(Aabb::EMPTY, |b, s| b.hull(s.field.support()));
-        let offset = self
-            .plan
-            .features
-            .iter()
-            .fold(0.0, |o: f64, f| o.max(f.offset));
+        let shapes = self.plan.shapes.iter().fold(Aabb::EMPTY, |b, s| b.hull(s.field.support()));
+        let offset = self.plan.features.iter().fold(0.0, |o: f64, f| o.max(f.offset));
         shapes.grow(offset)
     }
 }
@@ -143,14 +121,7 @@ fn check_course(course: &Course, k: usize, at: &str) -> Result<(), MorphError> {
                 || w.iter().sum::<f64>() <= 0.0
         }
     };
-    if bad {
-        Err(MorphError::Weights {
-            at: at.to_owned(),
-            shapes: k,
-        })
-    } else {
-        Ok(())
-    }
+    if bad { Err(MorphError::Weights { at: at.to_owned(), shapes: k }) } else { Ok(()) }
 }
 
 fn check_space_time(plan: &Plan) -> Result<(), MorphError> {
@@ -170,13 +141,5 @@ fn check_space_time(plan: &Plan) -> Result<(), MorphError> {
 }
 
 fn positive(ok: bool, what: &str, expected: &'static str, got: f64) -> Result<(), MorphError> {
-    if ok {
-        Ok(())
-    } else {
-        Err(MorphError::Range {
-            what: what.to_owned(),
-            expected,
-            got,
-        })
-    }
+    if ok { Ok(()) } else { Err(MorphError::Range { what: what.to_owned(), expected, got }) }
 }

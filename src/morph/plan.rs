@@ -112,12 +112,7 @@ pub struct SpaceTime {
 
 impl Default for SpaceTime {
     fn default() -> Self {
-        Self {
-            form: Form::L,
-            a0: None,
-            a: None,
-            a3: 1.0,
-        }
+        Self { form: Form::L, a0: None, a: None, a3: 1.0 }
     }
 }
 

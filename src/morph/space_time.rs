@@ -26,11 +26,7 @@ const LOWERING: f64 = 0.25;
 
 /// disp(r) of METHODS B with r in [0, 1]: 1 at 0, falling to 0 with zero slope at 1.
 fn disp(r: f64) -> f64 {
-    if r < 1.0 {
-        (1.0 - r).powi(3) / (1.0 + r)
-    } else {
-        0.0
-    }
+    if r < 1.0 { (1.0 - r).powi(3) / (1.0 + r) } else { 0.0 }
 }
 
 /// disp as a function of q >= 0 and of the time term g >= 0: falls with q, rises with g.
@@ -38,20 +34,12 @@ fn bump(q: f64, g: f64) -> f64 {
     if g <= 0.0 {
         return 0.0;
     }
-    if q.is_infinite() {
-        0.0
-    } else {
-        disp(q / (q + g * g))
-    }
+    if q.is_infinite() { 0.0 } else { disp(q / (q + g * g)) }
 }
 
 /// 4 a b / (a + b), zero when either is: 4 t (1 - t) for a pair.
 fn pair_time(a: f64, b: f64) -> f64 {
-    if a <= 0.0 || b <= 0.0 {
-        0.0
-    } else {
-        4.0 * a * b / (a + b)
-    }
+    if a <= 0.0 || b <= 0.0 { 0.0 } else { 4.0 * a * b / (a + b) }
 }
 
 fn union(a: f64, b: f64) -> f64 {
@@ -84,11 +72,7 @@ impl Bounded {
     }
 
     fn lowered(&self, f: f64, lam: f64) -> f64 {
-        if lam <= 0.0 {
-            f64::NEG_INFINITY
-        } else {
-            f - LOWERING * self.reach * (1.0 - lam) / lam
-        }
+        if lam <= 0.0 { f64::NEG_INFINITY } else { f - LOWERING * self.reach * (1.0 - lam) / lam }
     }
 
     fn pairs(&self, f: impl Fn(usize) -> f64, lam: &[f64]) -> f64 {
@@ -134,9 +118,8 @@ impl Bounded {
                         self.lowered(-g[i].lo, lam[i].hi),
                     )
                 };
-                let base = (0..g.len())
-                    .map(low)
-                    .fold(Interval::point(f64::NEG_INFINITY), Interval::max);
+                let base =
+                    (0..g.len()).map(low).fold(Interval::point(f64::NEG_INFINITY), Interval::max);
                 -(base + self.pairs_bound(low, lam))
             }
             Form::HalfCylinders => self.cylinders_bound(-g[0], -g[1], lam[1]),

@@ -65,10 +65,7 @@ fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
         .map(|j| {
             let leg = [legs[j][0], legs[j][1], legs[j][2]];
             let field = Arc::new(Table(bar(tops[j], sizes[j]), bar(leg, [4.0, 4.0, leg[2]])));
-            Part {
-                name: format!("s{j}"),
-                field,
-            }
+            Part { name: format!("s{j}"), field }
         })
         .collect();
     let feature = |name: &str, elements: Vec<Element>| Feature {
@@ -81,40 +78,21 @@ fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
     Plan {
         shapes,
         features: vec![
-            feature(
-                "top",
-                (0..k).map(|j| block(tops[j], sizes[j], turns[j])).collect(),
-            ),
-            feature(
-                "leg",
-                (0..k)
-                    .map(|j| block(legs[j], [8.0, 8.0, legs[j][2]], 0.0))
-                    .collect(),
-            ),
+            feature("top", (0..k).map(|j| block(tops[j], sizes[j], turns[j])).collect()),
+            feature("leg", (0..k).map(|j| block(legs[j], [8.0, 8.0, legs[j][2]], 0.0)).collect()),
         ],
         course: course([1.0, 1.0, 1.0]),
         blend,
         inner,
-        weighting: Weighting::Smooth {
-            epsilon: 3.0,
-            power: 2.0,
-        },
-        sharp: Weighting::Smooth {
-            epsilon: 1.0,
-            power: 4.0,
-        },
+        weighting: Weighting::Smooth { epsilon: 3.0, power: 2.0 },
+        sharp: Weighting::Smooth { epsilon: 1.0, power: 4.0 },
         frames: Frames::Average,
         space_time: SpaceTime::default(),
     }
 }
 
-const INNERS: [Inner; 5] = [
-    Inner::Linear,
-    Inner::SpaceTime,
-    Inner::Grow,
-    Inner::Erode,
-    Inner::Auto,
-];
+const INNERS: [Inner; 5] =
+    [Inner::Linear, Inner::SpaceTime, Inner::Grow, Inner::Erode, Inner::Auto];
 
 /// Every method on two and on three shapes, with and without features.
 fn morphs() -> Vec<(String, Plan)> {
@@ -162,10 +140,7 @@ fn bound_holds_for_every_method() {
             for _ in 0..24 {
                 let p = c + DVec3::new(next(), next(), next()) * half;
                 let v = f.value(p);
-                assert!(
-                    b.contains(v),
-                    "{name}: {v} at {p} not in {b:?}, half {half}"
-                );
+                assert!(b.contains(v), "{name}: {v} at {p} not in {b:?}, half {half}");
             }
         }
     }
@@ -214,11 +189,7 @@ fn pair_is_the_group_of_two() {
     }
     let b = build(pair).unwrap().at(0.9, &Quiet).unwrap();
     for i in 0..50 {
-        let p = DVec3::new(
-            f64::from(i) - 25.0,
-            f64::from(i * 7 % 31) - 15.0,
-            f64::from(i),
-        );
+        let p = DVec3::new(f64::from(i) - 25.0, f64::from(i * 7 % 31) - 15.0, f64::from(i));
         assert!((a.value(p) - b.value(p)).abs() < 1e-12);
     }
 }
@@ -228,9 +199,7 @@ fn batches_give_what_points_give() {
     let mut next = random(3);
     for (name, plan) in morphs() {
         let f = build(plan).unwrap().at(0.6, &Quiet).unwrap();
-        let at: Vec<_> = (0..64)
-            .map(|_| DVec3::new(next(), next(), next()) * 50.0)
-            .collect();
+        let at: Vec<_> = (0..64).map(|_| DVec3::new(next(), next(), next()) * 50.0).collect();
         let mut out = vec![0.0; at.len()];
         f.values(&at, &mut out);
         for (&p, &v) in at.iter().zip(&out) {
@@ -254,10 +223,8 @@ fn space_time_keeps_the_volume_where_the_mean_loses_all() {
             Aabb::around(self.0, DVec3::splat(self.1))
         }
     }
-    let ball = |x: f64| Part {
-        name: String::new(),
-        field: Arc::new(Ball(DVec3::new(x, 0.0, 0.0), 10.0)),
-    };
+    let ball =
+        |x: f64| Part { name: String::new(), field: Arc::new(Ball(DVec3::new(x, 0.0, 0.0), 10.0)) };
     let mut p = plan(2, Inner::Linear, Blend::Maps);
     (p.shapes, p.features) = (vec![ball(-15.0), ball(15.0)], Vec::new());
     let count = |f: &Shared| {
@@ -296,10 +263,7 @@ fn bad_plans_are_named() {
     assert_eq!(says(p), "feature `leg` has 1 elements for 2 shapes");
     let mut p = plan(3, Inner::Linear, Blend::Maps);
     p.features[0].morph = Course::Fixed(vec![0.0; 3]);
-    assert_eq!(
-        says(p),
-        "top: weights must be 3 numbers, none negative, not all zero"
-    );
+    assert_eq!(says(p), "top: weights must be 3 numbers, none negative, not all zero");
     let mut p = plan(3, Inner::SpaceTime, Blend::Maps);
     p.space_time.form = Form::HalfCylinders;
     assert!(says(p).contains("takes two shapes, got 3"));

@@ -11,15 +11,9 @@ pub struct Aabb {
 
 impl Aabb {
     /// The box that holds nothing; the start of every hull.
-    pub const EMPTY: Self = Self {
-        min: DVec3::INFINITY,
-        max: DVec3::NEG_INFINITY,
-    };
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
     /// All of space.
-    pub const ALL: Self = Self {
-        min: DVec3::NEG_INFINITY,
-        max: DVec3::INFINITY,
-    };
+    pub const ALL: Self = Self { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
 
     /// From corner to corner.
     pub const fn new(min: DVec3, max: DVec3) -> Self {
@@ -33,34 +27,22 @@ impl Aabb {
 
     /// Centre and half the side lengths.
     pub fn around(centre: DVec3, half: DVec3) -> Self {
-        Self {
-            min: centre - half,
-            max: centre + half,
-        }
+        Self { min: centre - half, max: centre + half }
     }
 
     /// Grown to hold `p`.
     pub fn with(self, p: DVec3) -> Self {
-        Self {
-            min: self.min.min(p),
-            max: self.max.max(p),
-        }
+        Self { min: self.min.min(p), max: self.max.max(p) }
     }
 
     /// The smallest box that holds both.
     pub fn hull(self, o: Self) -> Self {
-        Self {
-            min: self.min.min(o.min),
-            max: self.max.max(o.max),
-        }
+        Self { min: self.min.min(o.min), max: self.max.max(o.max) }
     }
 
     /// The common part, perhaps empty.
     pub fn meet(self, o: Self) -> Self {
-        Self {
-            min: self.min.max(o.min),
-            max: self.max.min(o.max),
-        }
+        Self { min: self.min.max(o.min), max: self.max.min(o.max) }
     }
 
     /// Whether no point lies in it.
@@ -95,10 +77,7 @@ impl Aabb {
 
     /// Larger by `by` mm on every side.
     pub fn grow(self, by: f64) -> Self {
-        Self {
-            min: self.min - by,
-            max: self.max + by,
-        }
+        Self { min: self.min - by, max: self.max + by }
     }
 
     /// The point of the box nearest to `p`.

@@ -14,10 +14,7 @@ pub struct Interval {
 
 impl Interval {
     /// The whole line: the honest answer where no enclosure is known.
-    pub const ALL: Self = Self {
-        lo: f64::NEG_INFINITY,
-        hi: f64::INFINITY,
-    };
+    pub const ALL: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
 
     /// `[lo, hi]`.
     pub const fn new(lo: f64, hi: f64) -> Self {
@@ -31,27 +28,18 @@ impl Interval {
 
     /// `[centre - radius, centre + radius]`.
     pub fn ball(centre: f64, radius: f64) -> Self {
-        Self {
-            lo: centre - radius,
-            hi: centre + radius,
-        }
+        Self { lo: centre - radius, hi: centre + radius }
     }
 
     /// The smallest range that holds both.
     pub fn hull(self, o: Self) -> Self {
-        Self {
-            lo: self.lo.min(o.lo),
-            hi: self.hi.max(o.hi),
-        }
+        Self { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi) }
     }
 
     /// The common part of two enclosures of the same value; where round-off leaves none, their gap.
     pub fn meet(self, o: Self) -> Self {
         let (lo, hi) = (self.lo.max(o.lo), self.hi.min(o.hi));
-        Self {
-            lo: lo.min(hi),
-            hi: hi.max(lo),
-        }
+        Self { lo: lo.min(hi), hi: hi.max(lo) }
     }
 
     /// Whether `x` lies in the range, ends included.
@@ -66,18 +54,12 @@ impl Interval {
 
     /// Values of `min(a, b)`.
     pub fn min(self, o: Self) -> Self {
-        Self {
-            lo: self.lo.min(o.lo),
-            hi: self.hi.min(o.hi),
-        }
+        Self { lo: self.lo.min(o.lo), hi: self.hi.min(o.hi) }
     }
 
     /// Values of `max(a, b)`.
     pub fn max(self, o: Self) -> Self {
-        Self {
-            lo: self.lo.max(o.lo),
-            hi: self.hi.max(o.hi),
-        }
+        Self { lo: self.lo.max(o.lo), hi: self.hi.max(o.hi) }
     }
 
     /// Values of `|a|`.
@@ -87,10 +69,7 @@ impl Interval {
         } else if self.hi <= 0.0 {
             -self
         } else {
-            Self {
-                lo: 0.0,
-                hi: self.hi.max(-self.lo),
-            }
+            Self { lo: 0.0, hi: self.hi.max(-self.lo) }
         }
     }
 
@@ -101,64 +80,43 @@ impl Interval {
             return Self::point(0.0);
         }
         let (a, b) = (self.lo * s, self.hi * s);
-        Self {
-            lo: a.min(b),
-            hi: a.max(b),
-        }
+        Self { lo: a.min(b), hi: a.max(b) }
     }
 
     /// Values of `a + d`.
     pub fn shift(self, d: f64) -> Self {
-        Self {
-            lo: self.lo + d,
-            hi: self.hi + d,
-        }
+        Self { lo: self.lo + d, hi: self.hi + d }
     }
 
     /// Values of `clamp(a, lo, hi)`.
     pub fn clamp(self, lo: f64, hi: f64) -> Self {
-        Self {
-            lo: self.lo.clamp(lo, hi),
-            hi: self.hi.clamp(lo, hi),
-        }
+        Self { lo: self.lo.clamp(lo, hi), hi: self.hi.clamp(lo, hi) }
     }
 
     /// Grown at both ends by `by`, to cover round-off.
     pub fn widen(self, by: f64) -> Self {
-        Self {
-            lo: self.lo - by,
-            hi: self.hi + by,
-        }
+        Self { lo: self.lo - by, hi: self.hi + by }
     }
 }
 
 impl Add for Interval {
     type Output = Self;
     fn add(self, o: Self) -> Self {
-        Self {
-            lo: self.lo + o.lo,
-            hi: self.hi + o.hi,
-        }
+        Self { lo: self.lo + o.lo, hi: self.hi + o.hi }
     }
 }
 
 impl Sub for Interval {
     type Output = Self;
     fn sub(self, o: Self) -> Self {
-        Self {
-            lo: self.lo - o.hi,
-            hi: self.hi - o.lo,
-        }
+        Self { lo: self.lo - o.hi, hi: self.hi - o.lo }
     }
 }
 
 impl Neg for Interval {
     type Output = Self;
     fn neg(self) -> Self {
-        Self {
-            lo: -self.hi,
-            hi: -self.lo,
-        }
+        Self { lo: -self.hi, hi: -self.lo }
     }
 }
 

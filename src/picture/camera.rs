@@ -20,12 +20,8 @@ pub enum View {
 
 impl View {
     /// All views, with their names.
-    pub const ALL: [(&'static str, View); 4] = [
-        ("iso", View::Iso),
-        ("front", View::Front),
-        ("side", View::Side),
-        ("top", View::Top),
-    ];
+    pub const ALL: [(&'static str, View); 4] =
+        [("iso", View::Iso), ("front", View::Front), ("side", View::Side), ("top", View::Top)];
 
     /// Unit vectors to the right, up in the picture, and towards the camera.
     fn axes(self) -> [Vec3; 3] {
@@ -50,9 +46,7 @@ impl FromStr for View {
     fn from_str(name: &str) -> Result<Self, String> {
         let names = Self::ALL.map(|(name, _)| name).join(", ");
         let found = Self::ALL.into_iter().find(|(known, _)| *known == name);
-        found
-            .map(|(_, view)| view)
-            .ok_or_else(|| format!("no view `{name}`; there are {names}"))
+        found.map(|(_, view)| view).ok_or_else(|| format!("no view `{name}`; there are {names}"))
     }
 }
 
@@ -92,20 +86,8 @@ impl Camera {
         let [right, up, toward] = view.axes();
         let eye = (view == View::Iso).then_some(ISO_EYE);
         let half = Vec2::from(size.map(|n| n as f32)) * 0.5;
-        let mut camera = Self {
-            right,
-            up,
-            toward,
-            eye,
-            zoom: 1.0,
-            middle: Vec2::ZERO,
-            half,
-        };
-        let used = scene
-            .faces
-            .iter()
-            .flatten()
-            .map(|&v| scene.points[v as usize]);
+        let mut camera = Self { right, up, toward, eye, zoom: 1.0, middle: Vec2::ZERO, half };
+        let used = scene.faces.iter().flatten().map(|&v| scene.points[v as usize]);
         let (low, high) = match &scene.frame {
             Some(frame) => camera.extent(frame.iter().copied()),
             None => camera.extent(used),
@@ -126,10 +108,7 @@ impl Camera {
 
     /// Onto the plane through the origin, with nearness; `None` behind or at the eye.
     fn flatten(&self, p: Vec3) -> Option<(Vec2, f32)> {
-        let (xy, z) = (
-            Vec2::new(p.dot(self.right), p.dot(self.up)),
-            p.dot(self.toward),
-        );
+        let (xy, z) = (Vec2::new(p.dot(self.right), p.dot(self.up)), p.dot(self.toward));
         match self.eye {
             None => Some((xy, z)),
             Some(eye) if z < eye * 0.99 => Some((xy * (eye / (eye - z)), 1.0 / (eye - z))),
@@ -141,10 +120,7 @@ impl Camera {
     pub fn see(&self, p: Vec3) -> Option<Seen> {
         let (xy, near) = self.flatten(p)?;
         let from_middle = (xy - self.middle) * self.zoom;
-        Some(Seen {
-            at: self.half + Vec2::new(from_middle.x, -from_middle.y),
-            near,
-        })
+        Some(Seen { at: self.half + Vec2::new(from_middle.x, -from_middle.y), near })
     }
 
     /// What a step towards the eye, small and near the origin, adds to nearness.
@@ -176,8 +152,6 @@ impl Camera {
 
     /// Unit vector from a point to the eye.
     pub fn sight(&self, p: Vec3) -> Vec3 {
-        self.eye.map_or(self.toward, |eye| {
-            (self.toward * eye - p).normalize_or(self.toward)
-        })
+        self.eye.map_or(self.toward, |eye| (self.toward * eye - p).normalize_or(self.toward))
     }
 }

@@ -45,12 +45,7 @@ impl<'a> Caster<'a> {
         // With fewer faces than a map has texels a coarser copy saves nothing.
         if (scene.faces.len() as f32) < texels * texels {
             let (points, faces) = (Cow::from(&scene.points), Cow::from(&scene.faces));
-            return Self {
-                points,
-                faces,
-                corners,
-                texels,
-            };
+            return Self { points, faces, corners, texels };
         }
         let scale = texels / COARSE / (scene.max - scene.min).max_element();
         let cell = |v: u32| {
@@ -58,28 +53,19 @@ impl<'a> Caster<'a> {
             let [x, y, z] = ((scene.points[v as usize] - scene.min) * scale).to_array();
             [x as u32, y as u32, z as u32]
         };
-        let mut order: Vec<([u32; 3], u32)> = (0..scene.points.len() as u32)
-            .into_par_iter()
-            .map(|v| (cell(v), v))
-            .collect();
+        let mut order: Vec<([u32; 3], u32)> =
+            (0..scene.points.len() as u32).into_par_iter().map(|v| (cell(v), v)).collect();
         order.par_sort_unstable();
         let mut name = vec![0; scene.points.len()];
         let mut points = Vec::new();
         for group in order.chunk_by(|a, b| a.0 == b.0) {
-            group
-                .iter()
-                .for_each(|&(_, v)| name[v as usize] = points.len() as u32);
+            group.iter().for_each(|&(_, v)| name[v as usize] = points.len() as u32);
             points.push(scene.points[group[0].1 as usize]);
         }
         let rename = |f: &[u32; 3]| f.map(|v| name[v as usize]);
         let whole = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
         let faces: Vec<[u32; 3]> = scene.faces.par_iter().map(rename).filter(whole).collect();
-        Self {
-            points: Cow::from(points),
-            faces: Cow::from(faces),
-            corners,
-            texels,
-        }
+        Self { points: Cow::from(points), faces: Cow::from(faces), corners, texels }
     }
 }
 
@@ -112,16 +98,7 @@ impl DepthMap {
         let (across, along, origin) = (across * scale, along * scale, 1.0 - low * scale);
         let lift = LIFT / scale;
         let depth = vec![f32::NEG_INFINITY; width * height];
-        let mut map = Self {
-            toward,
-            across,
-            along,
-            origin,
-            lift,
-            width,
-            height,
-            depth,
-        };
+        let mut map = Self { toward, across, along, origin, lift, width, height, depth };
         let at = |p: &Vec3| map.place(*p).extend(p.dot(toward));
         let points: Vec<Vec3> = caster.points.iter().map(at).collect();
         for f in caster.faces.iter() {
@@ -167,11 +144,8 @@ impl DepthMap {
         let right = Vec3::new(u.y, v.y, depth.y);
         for (i, y) in rows.enumerate() {
             let down = i as f32;
-            let mut at = Vec3::new(
-                u.x + u.z * down,
-                v.x + v.z * down,
-                c.z + depth.x + depth.z * down,
-            );
+            let mut at =
+                Vec3::new(u.x + u.z * down, v.x + v.z * down, c.z + depth.x + depth.z * down);
             let row = y * self.width;
             for texel in &mut self.depth[row + columns.start..row + columns.end] {
                 if at.x >= -SLACK && at.y >= -SLACK && at.x + at.y <= 1.0 + SLACK {
@@ -199,9 +173,7 @@ impl DepthMap {
         let gaps = [first, first + 1, first + self.width, first + self.width + 1].map(gap);
         let free = gaps.map(|gap| if gap > 0.0 { 0.0 } else { 1.0 });
         let far = |gap: f32| if gap > 0.0 { gap } else { f32::INFINITY };
-        let nearest = gaps
-            .into_iter()
-            .fold(f32::INFINITY, |n, gap| n.min(far(gap)));
+        let nearest = gaps.into_iter().fold(f32::INFINITY, |n, gap| n.min(far(gap)));
         let upper = free[0] + (free[1] - free[0]) * part.x;
         let lower = free[2] + (free[3] - free[2]) * part.x;
         (upper + (lower - upper) * part.y, nearest)

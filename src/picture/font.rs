@@ -72,9 +72,7 @@ fn glyph(c: char) -> &'static [u8; 9] {
         c => c,
     };
     let index = (c as usize).wrapping_sub(' ' as usize);
-    GLYPHS
-        .get(index)
-        .unwrap_or(&GLYPHS['?' as usize - ' ' as usize])
+    GLYPHS.get(index).unwrap_or(&GLYPHS['?' as usize - ' ' as usize])
 }
 
 /// Lines between neighbouring dots; a diagonal only where no corner dot makes the turn.
@@ -83,10 +81,7 @@ fn strokes(rows: &[u8; 9]) -> Vec<[Vec2; 2]> {
         (0..5).contains(&x) && (0..9).contains(&y) && rows[y as usize] >> (4 - x) & 1 == 1
     };
     let mut lines = Vec::new();
-    for (x, y) in (0..9)
-        .flat_map(|y| (0..5).map(move |x| (x, y)))
-        .filter(|&(x, y)| lit(x, y))
-    {
+    for (x, y) in (0..9).flat_map(|y| (0..5).map(move |x| (x, y))).filter(|&(x, y)| lit(x, y)) {
         let from = Vec2::new(x as f32, y as f32);
         let mut alone = true;
         for (dx, dy) in [(1, 0), (0, 1), (1, 1), (-1, 1)] {
@@ -106,9 +101,7 @@ fn strokes(rows: &[u8; 9]) -> Vec<[Vec2; 2]> {
 fn stamp(image: &mut Image, lines: &[[Vec2; 2]], corner: Vec2, dot: f32, ink: [u8; 3]) {
     let size = Vec2::new(image.width() as f32, image.height() as f32);
     let low = (corner - dot).clamp(Vec2::ZERO, size).floor();
-    let high = (corner + dot * Vec2::new(5.0, 9.0))
-        .clamp(Vec2::ZERO, size)
-        .ceil();
+    let high = (corner + dot * Vec2::new(5.0, 9.0)).clamp(Vec2::ZERO, size).ceil();
     let stroke = (STROKE * dot).max(0.5);
     for y in low.y as u32..high.y as u32 {
         for x in low.x as u32..high.x as u32 {

@@ -41,32 +41,20 @@ impl Ground {
             .map(|y| {
                 let spot = |x| {
                     let cell = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-                    Spot {
-                        at: (low + cell / scale).extend(min.z),
-                        normal: Vec3::Z,
-                    }
+                    Spot { at: (low + cell / scale).extend(min.z), normal: Vec3::Z }
                 };
                 lights.on_floor(&(0..side).map(spot).collect::<Vec<_>>())
             })
             .collect();
-        let (raw, caster): (Vec<f32>, Vec<f32>) = rows
-            .into_iter()
-            .flatten()
-            .map(|[light, caster]| (light, caster))
-            .unzip();
+        let (raw, caster): (Vec<f32>, Vec<f32>) =
+            rows.into_iter().flatten().map(|[light, caster]| (light, caster)).unzip();
         // The width of the blur is itself smoothed, or its jumps would show.
         let width = blurred(&caster, side, |_| side as f32 / 64.0);
         let mut light = raw;
         for _ in 0..2 {
             light = blurred(&light, side, |i| width[i] * BLUR * scale);
         }
-        Self {
-            z: min.z,
-            side,
-            low,
-            scale,
-            light,
-        }
+        Self { z: min.z, side, low, scale, light }
     }
 
     /// The light at a place of the floor, fading to 1 at the edge of the square.

@@ -21,11 +21,7 @@ impl Image {
         if !(1..=LARGEST).contains(&width) || !(1..=LARGEST).contains(&height) {
             return Err(PictureError::Size { width, height });
         }
-        Ok(Self {
-            width,
-            height,
-            pixels: vec![color; width as usize * height as usize],
-        })
+        Ok(Self { width, height, pixels: vec![color; width as usize * height as usize] })
     }
 
     /// Width in pixels.
@@ -102,10 +98,7 @@ pub fn save_png(path: &Path, image: &Image, force: bool) -> Result<(), PictureEr
     }
     write(path, image, force).map_err(|source| match source.kind() {
         io::ErrorKind::AlreadyExists if !force => exists(),
-        _ => PictureError::Write {
-            path: path.to_owned(),
-            source,
-        },
+        _ => PictureError::Write { path: path.to_owned(), source },
     })
 }
 
@@ -121,10 +114,6 @@ fn write(path: &Path, image: &Image, force: bool) -> io::Result<()> {
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = builder.tempfile_in(folder)?;
     file.write_all(&bytes)?;
-    if force {
-        file.persist(path)
-    } else {
-        file.persist_noclobber(path)
-    }?;
+    if force { file.persist(path) } else { file.persist_noclobber(path) }?;
     Ok(())
 }

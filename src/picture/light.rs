@@ -37,15 +37,9 @@ impl Lights {
         let coarse = Caster::of(scene, pixels as f32 * SKY_DETAIL);
         let sky = sky.into_par_iter().map(|from| (from, &coarse));
         let key = key.into_par_iter().map(|from| (from, &fine));
-        let light = |((toward, color), caster)| Light {
-            color,
-            map: DepthMap::new(caster, toward),
-        };
+        let light = |((toward, color), caster)| Light { color, map: DepthMap::new(caster, toward) };
         let lights: Vec<Light> = sky.chain(key).map(light).collect();
-        let open = lights
-            .iter()
-            .map(|l| l.color * l.map.toward.z.max(0.0))
-            .sum();
+        let open = lights.iter().map(|l| l.color * l.map.toward.z.max(0.0)).sum();
         Self { lights, open }
     }
 
@@ -80,9 +74,7 @@ impl Lights {
         }
         let all: f32 = self.lights.iter().map(weigh).sum();
         let finite = |d: f32| if d.is_finite() { d } else { 0.0 };
-        sums.into_iter()
-            .map(|[sum, nearest]| [sum / all, finite(nearest)])
-            .collect()
+        sums.into_iter().map(|[sum, nearest]| [sum / all, finite(nearest)]).collect()
     }
 }
 
@@ -101,12 +93,8 @@ fn directions(camera: &Camera) -> (Vec<Source>, Vec<Source>) {
         let glow = 0.18 + 0.95 * above * above + 0.60 * toward.dot(fill).max(0.0).powi(2);
         (toward, Vec3::new(0.97, 0.99, 1.03) * (glow * 0.5))
     };
-    let above = spiral(ABOVE, 1.0, 0.0)
-        .map(from_sky)
-        .map(|(l, c)| (l, c / ABOVE as f32));
-    let below = spiral(BELOW, 0.0, -1.0)
-        .map(from_sky)
-        .map(|(l, c)| (l, c / BELOW as f32));
+    let above = spiral(ABOVE, 1.0, 0.0).map(from_sky).map(|(l, c)| (l, c / ABOVE as f32));
+    let below = spiral(BELOW, 0.0, -1.0).map(from_sky).map(|(l, c)| (l, c / BELOW as f32));
     let (u, v) = key.any_orthonormal_pair();
     let disc = (0..KEY).map(|i| {
         let r = ((i as f32 + 0.5) / KEY as f32).sqrt() * KEY_RADIUS;

@@ -119,9 +119,7 @@ pub fn render(mesh: &TriMesh, style: &Style) -> Result<Image, PictureError> {
 
 /// The smallest box round some meshes: a common [`Style::frame`] for pictures of one scale.
 pub fn common_frame<'a>(meshes: impl IntoIterator<Item = &'a TriMesh>) -> Aabb {
-    meshes
-        .into_iter()
-        .fold(Aabb::EMPTY, |frame, mesh| frame.hull(mesh.bounds()))
+    meshes.into_iter().fold(Aabb::EMPTY, |frame, mesh| frame.hull(mesh.bounds()))
 }
 
 #[cfg(test)]

@@ -25,15 +25,10 @@ pub(super) struct Normals {
 impl Normals {
     pub fn new(points: &[Vec3], faces: &[[u32; 3]]) -> Self {
         let first = joined(points);
-        let corners: Vec<[u32; 3]> = faces
-            .par_iter()
-            .map(|f| f.map(|v| first[v as usize]))
-            .collect();
+        let corners: Vec<[u32; 3]> =
+            faces.par_iter().map(|f| f.map(|v| first[v as usize])).collect();
         let mut start = vec![0_u32; points.len() + 1];
-        corners
-            .iter()
-            .flatten()
-            .for_each(|&v| start[v as usize + 1] += 1);
+        corners.iter().flatten().for_each(|&v| start[v as usize + 1] += 1);
         for v in 0..points.len() {
             start[v + 1] += start[v];
         }
@@ -50,12 +45,7 @@ impl Normals {
             let vector = (b - a).cross(c - a);
             vector.normalize_or(Vec3::Z).extend(vector.length())
         };
-        Self {
-            faces: faces.par_iter().map(normal).collect(),
-            corners,
-            start,
-            round,
-        }
+        Self { faces: faces.par_iter().map(normal).collect(), corners, start, round }
     }
 
     /// Unit normal of a face.
@@ -90,16 +80,12 @@ impl Normals {
 /// For each point the first one at the same place.
 fn joined(points: &[Vec3]) -> Vec<u32> {
     let bits = |v: u32| (points[v as usize] + 0.0).to_array().map(f32::to_bits);
-    let mut order: Vec<([u32; 3], u32)> = (0..points.len() as u32)
-        .into_par_iter()
-        .map(|v| (bits(v), v))
-        .collect();
+    let mut order: Vec<([u32; 3], u32)> =
+        (0..points.len() as u32).into_par_iter().map(|v| (bits(v), v)).collect();
     order.par_sort_unstable();
     let mut first = vec![0; points.len()];
     for group in order.chunk_by(|a, b| a.0 == b.0) {
-        group
-            .iter()
-            .for_each(|&(_, v)| first[v as usize] = group[0].1);
+        group.iter().for_each(|&(_, v)| first[v as usize] = group[0].1);
     }
     first
 }

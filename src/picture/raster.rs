@@ -63,18 +63,10 @@ impl<'a> Raster<'a> {
                 near: seen.near,
             })
         };
-        let corners: Vec<Option<Corner>> = scene
-            .points
-            .par_iter()
-            .map(|&p| camera.see(p).and_then(corner))
-            .collect();
-        let mut raster = Self {
-            scene,
-            corners,
-            bands: Vec::new(),
-            behind: camera.nearness(BEHIND),
-            rows,
-        };
+        let corners: Vec<Option<Corner>> =
+            scene.points.par_iter().map(|&p| camera.see(p).and_then(corner)).collect();
+        let mut raster =
+            Self { scene, corners, bands: Vec::new(), behind: camera.nearness(BEHIND), rows };
         let mut bands = vec![Vec::new(); height.div_ceil(rows)];
         for i in 0..scene.faces.len() {
             let Some(c) = raster.corners(i) else { continue };
@@ -173,10 +165,7 @@ struct Edges {
 impl Edges {
     fn of(c: [Corner; 3]) -> Self {
         let corner = c.map(|c| [i64::from(c.x), i64::from(c.y)]);
-        Self {
-            corner,
-            turn: across(corner[0], corner[1], corner[2]),
-        }
+        Self { corner, turn: across(corner[0], corner[1], corner[2]) }
     }
 
     /// At the centre of a sample, and the step to the next one to the right.

@@ -22,8 +22,7 @@ impl Scene {
     /// `None` when there is nothing to draw.
     pub fn new(mesh: &TriMesh, frame: Option<Aabb>) -> Option<Self> {
         let drawable = |f: &&[u32; 3]| {
-            f.iter()
-                .all(|&v| mesh.points.get(v as usize).is_some_and(|p| p.is_finite()))
+            f.iter().all(|&v| mesh.points.get(v as usize).is_some_and(|p| p.is_finite()))
         };
         let mut faces: Vec<[u32; 3]> = mesh.faces.iter().filter(drawable).copied().collect();
         let own = Aabb::of(faces.iter().flatten().map(|&v| mesh.points[v as usize]));
@@ -46,20 +45,11 @@ impl Scene {
         let normals = Normals::new(&points, &faces);
         let (min, max) = (local(own.min), local(own.max));
         let frame = framed.map(|f| f.corners().map(local));
-        Some(Self {
-            points,
-            faces,
-            normals,
-            min,
-            max,
-            frame,
-        })
+        Some(Self { points, faces, normals, min, max, frame })
     }
 
     /// The eight corners of the box round the mesh.
     pub fn corners(&self) -> [Vec3; 8] {
-        Aabb::new(self.min.as_dvec3(), self.max.as_dvec3())
-            .corners()
-            .map(|p| p.as_vec3())
+        Aabb::new(self.min.as_dvec3(), self.max.as_dvec3()).corners().map(|p| p.as_vec3())
     }
 }

@@ -55,10 +55,7 @@ impl Patch {
     }
 
     fn spot(&self) -> Spot {
-        Spot {
-            at: self.at / self.count,
-            normal: self.normal.normalize_or(self.first),
-        }
+        Spot { at: self.at / self.count, normal: self.normal.normalize_or(self.first) }
     }
 }
 
@@ -73,14 +70,7 @@ pub(super) fn draw(
     let samples = (width * SAMPLES, height * SAMPLES);
     let raster = Raster::new(scene, camera, SAMPLES as f32, samples.1, ROWS * SAMPLES);
     let ground = Ground::new(scene, lights, width.max(height));
-    let painter = Painter {
-        scene,
-        camera,
-        lights,
-        ground,
-        raster,
-        style,
-    };
+    let painter = Painter { scene, camera, lights, ground, raster, style };
     let bands = image.pixels_mut().par_chunks_mut(width * ROWS).enumerate();
     bands.for_each(|(index, pixels)| {
         let band = painter.raster.band(index, samples.0, samples.1);
@@ -135,10 +125,7 @@ impl Painter<'_> {
         let mut last = (NONE, [Vec3::ZERO; 3]);
         for k in 0..SAMPLES * SAMPLES {
             let (sx, sy) = (x * SAMPLES + k % SAMPLES, y * SAMPLES + k / SAMPLES);
-            let (face, near) = (
-                band.face[sy * band.width + sx],
-                band.near[sy * band.width + sx],
-            );
+            let (face, near) = (band.face[sy * band.width + sx], band.near[sy * band.width + sx]);
             if face == NONE {
                 misses += 1.0;
                 continue;
@@ -147,24 +134,14 @@ impl Painter<'_> {
                 last = (face, self.scene.normals.smooth(face as usize));
             }
             let shares = self.raster.shares(face, sx, band.top + sy);
-            let at = self.camera.unsee(Seen {
-                at: centre(sx, band.top + sy, SIDE),
-                near,
-            });
+            let at = self.camera.unsee(Seen { at: centre(sx, band.top + sy, SIDE), near });
             let (normal, behind) = self.facing(face, at, last.1, shares);
             let alike = |p: &&mut Patch| p.behind == behind && p.first.dot(normal) > ALIKE;
             match patches[first..].iter_mut().find(alike) {
                 Some(patch) => patch.add(at, normal),
                 None => {
                     let (first, count) = (normal, 1.0);
-                    patches.push(Patch {
-                        pixel,
-                        count,
-                        at,
-                        first,
-                        normal,
-                        behind,
-                    });
+                    patches.push(Patch { pixel, count, at, first, normal, behind });
                 }
             }
         }
@@ -173,10 +150,7 @@ impl Painter<'_> {
 
     /// The normal on the side of a face that is seen, and whether that is its back.
     fn facing(&self, face: u32, at: Vec3, corners: [Vec3; 3], shares: [f32; 3]) -> (Vec3, bool) {
-        let (flat, sight) = (
-            self.scene.normals.flat(face as usize),
-            self.camera.sight(at),
-        );
+        let (flat, sight) = (self.scene.normals.flat(face as usize), self.camera.sight(at));
         let behind = flat.dot(sight) < 0.0;
         let [a, b, c] = corners;
         let smooth = (a * shares[0] + b * shares[1] + c * shares[2]).normalize_or(flat);
@@ -208,11 +182,7 @@ impl Painter<'_> {
 fn linear(color: [u8; 3]) -> Vec3 {
     let channel = |c: u8| {
         let c = f32::from(c) / 255.0;
-        if c <= 0.04045 {
-            c / 12.92
-        } else {
-            ((c + 0.055) / 1.055).powf(2.4)
-        }
+        if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
     };
     Vec3::from(color.map(channel))
 }
@@ -221,11 +191,7 @@ fn linear(color: [u8; 3]) -> Vec3 {
 fn encode(light: Vec3) -> [u8; 3] {
     let channel = |c: f32| {
         let c = c.clamp(0.0, 1.0);
-        let c = if c <= 0.003_130_8 {
-            c * 12.92
-        } else {
-            1.055 * c.powf(1.0 / 2.4) - 0.055
-        };
+        let c = if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
         (c * 255.0).round() as u8
     };
     light.to_array().map(channel)

@@ -50,18 +50,11 @@ impl Default for Layout {
 pub fn sheet(cells: &[Cell], layout: &Layout) -> Result<Image, PictureError> {
     let plan = Plan::of(cells, layout);
     let too_large = |n: f32| {
-        if n < f32::from(u16::MAX) {
-            n as u32
-        } else {
-            u32::MAX
-        }
+        if n < f32::from(u16::MAX) { n as u32 } else { u32::MAX }
     };
     let (width, height) = (too_large(plan.size.x), too_large(plan.size.y));
     if cells.is_empty() {
-        return Err(PictureError::Size {
-            width: 0,
-            height: 0,
-        });
+        return Err(PictureError::Size { width: 0, height: 0 });
     }
     let mut image = Image::filled(width, height, layout.background)?;
     plan.labels(&mut image, layout);
@@ -96,42 +89,17 @@ impl Plan {
         let place = images.map(measure).fold(Vec2::splat(16.0), Vec2::max);
         let letter = (place.min_element() * 0.034).clamp(7.0, 22.0).round();
         let gap = (place.min_element() * 0.02).clamp(4.0, 16.0).round();
-        let lines = cells
-            .iter()
-            .map(|c| c.caption.lines().count())
-            .max()
-            .unwrap_or(0);
+        let lines = cells.iter().map(|c| c.caption.lines().count()).max().unwrap_or(0);
         let band = |show: bool, lines: f32| if show { letter * lines } else { 0.0 };
-        let left = layout
-            .row_labels
-            .iter()
-            .map(|l| width(l, letter))
-            .fold(0.0, f32::max);
-        let left = if left > 0.0 {
-            left.min(place.x) + letter * 2.0
-        } else {
-            0.0
-        };
+        let left = layout.row_labels.iter().map(|l| width(l, letter)).fold(0.0, f32::max);
+        let left = if left > 0.0 { left.min(place.x) + letter * 2.0 } else { 0.0 };
         let title = band(!layout.title.is_empty(), 4.0);
         let top = title + band(!layout.column_labels.is_empty(), 2.6);
         let first = Vec2::new(left + gap, top + gap).round();
-        let captions = if lines > 0 {
-            letter * (1.0 + 1.8 * lines as f32)
-        } else {
-            0.0
-        };
+        let captions = if lines > 0 { letter * (1.0 + 1.8 * lines as f32) } else { 0.0 };
         let step = (place + Vec2::new(gap, gap + captions)).round();
         let size = first + step * Vec2::new(columns as f32, rows as f32);
-        Self {
-            columns,
-            rows,
-            place,
-            letter,
-            gap,
-            first,
-            step,
-            size,
-        }
+        Self { columns, rows, place, letter, gap, first, step, size }
     }
 
     fn corner(&self, column: usize, row: usize) -> Vec2 {
@@ -142,13 +110,7 @@ impl Plan {
         let (letter, ink) = (self.letter, layout.ink);
         let large = letter * 1.4;
         let title = fitted(&layout.title, large, self.size.x - 2.0 * self.gap);
-        write(
-            image,
-            &title,
-            Vec2::new(self.gap + large * 0.2, letter * 2.4),
-            large,
-            ink,
-        );
+        write(image, &title, Vec2::new(self.gap + large * 0.2, letter * 2.4), large, ink);
         for (i, label) in layout.column_labels.iter().enumerate().take(self.columns) {
             let label = fitted(label, letter, self.place.x);
             let at = self.corner(i, 0) + Vec2::new(self.place.x * 0.5, -letter * 1.2);

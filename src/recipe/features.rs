@@ -126,14 +126,11 @@ impl ElementEntry {
             at,
         );
         match (&self.mesh, primitive) {
-            (None, p) => p?
-                .map(ElementShape::Primitive)
-                .ok_or_else(|| Problem::new(at, primitive::NO_SHAPE)),
+            (None, p) => {
+                p?.map(ElementShape::Primitive).ok_or_else(|| Problem::new(at, primitive::NO_SHAPE))
+            }
             (Some(m), Ok(None)) => Ok(ElementShape::Mesh(m)),
-            (Some(_), _) => Err(Problem::new(
-                at,
-                "`mesh` beside another shape; give one shape",
-            )),
+            (Some(_), _) => Err(Problem::new(at, "`mesh` beside another shape; give one shape")),
         }
     }
 
@@ -193,10 +190,7 @@ impl FeatureEntry {
             let at = join(&format!("{at}.on"), shape);
             if !shapes.contains_key(shape) {
                 let hint = did_you_mean(shape, shapes.keys().map(String::as_str));
-                return Err(Problem::new(
-                    at,
-                    format!("no shape is called `{shape}`{hint}"),
-                ));
+                return Err(Problem::new(at, format!("no shape is called `{shape}`{hint}")));
             }
             element.validate(&at)?;
         }

@@ -9,11 +9,7 @@ const DEEPEST: usize = 64;
 
 /// Every key and the bytes of its value.
 pub(super) fn places(text: &str) -> Vec<(String, Range<usize>)> {
-    let mut scan = Scan {
-        text: text.as_bytes(),
-        at: 0,
-        places: Vec::new(),
-    };
+    let mut scan = Scan { text: text.as_bytes(), at: 0, places: Vec::new() };
     // bad grammar ends the scan early; what was found so far still helps
     let _ = scan.value(String::new(), 0);
     scan.places
@@ -118,13 +114,8 @@ mod tests {
     fn finds_keys_and_survives_nonsense() {
         let text = r#"{"a": {"b c": [1, {"d": "x\"y"}]}, "e": 2}"#;
         let found = places(text);
-        let at = |key: &str| {
-            found
-                .iter()
-                .rev()
-                .find(|(k, _)| k == key)
-                .map(|(_, r)| &text[r.clone()])
-        };
+        let at =
+            |key: &str| found.iter().rev().find(|(k, _)| k == key).map(|(_, r)| &text[r.clone()]);
         assert_eq!(at("a.\"b c\"[1].d"), Some(r#""x\"y""#));
         assert_eq!(at("e"), Some("2"));
         for cut in 0..text.len() {

@@ -50,11 +50,7 @@ pub struct MorphEntry {
     #[serde(default, skip_serializing_if = "is_default")]
     pub deform_weights: Weights,
     /// Parameters of space-time blending.
-    #[serde(
-        rename = "space-time",
-        default,
-        skip_serializing_if = "Option::is_none"
-    )]
+    #[serde(rename = "space-time", default, skip_serializing_if = "Option::is_none")]
     pub space_time: Option<SpaceTimeEntry>,
 }
 
@@ -204,21 +200,14 @@ impl MorphEntry {
     /// What is wrong beyond the grammar; `at` is the key of this entry.
     pub(super) fn validate(&self, at: &str, recipe: &Recipe) -> Result<(), Problem> {
         if self.between.is_some() && self.among.is_some() {
-            return Err(Problem::new(
-                at,
-                "both `between` and `among`; give one of them",
-            ));
+            return Err(Problem::new(at, "both `between` and `among`; give one of them"));
         }
         let between = self.between.iter().flatten().map(|n| ("between", n));
         let among = self.among.iter().flatten().map(|n| ("among", n));
         for (key, name) in between.chain(among) {
             known_shape(name, &format!("{at}.{key}"), recipe)?;
         }
-        if let Some(name) = self
-            .frames
-            .as_ref()
-            .filter(|f| *f != "average" && *f != "dominant")
-        {
+        if let Some(name) = self.frames.as_ref().filter(|f| *f != "average" && *f != "dominant") {
             let names = ["average", "dominant"].into_iter();
             let names = names.chain(recipe.shapes.keys().map(String::as_str));
             if !recipe.shapes.contains_key(name) {
@@ -228,20 +217,12 @@ impl MorphEntry {
             }
         }
         if let Some(PlainOr::Table(w)) = &self.weighting {
-            w.epsilon
-                .map_or(Ok(()), |e| positive(e, &format!("{at}.weighting.epsilon")))?;
-            w.power
-                .map_or(Ok(()), |p| positive(p, &format!("{at}.weighting.power")))?;
+            w.epsilon.map_or(Ok(()), |e| positive(e, &format!("{at}.weighting.epsilon")))?;
+            w.power.map_or(Ok(()), |p| positive(p, &format!("{at}.weighting.power")))?;
         }
         rows(&self.weights, &format!("{at}.weights"), recipe)?;
-        rows(
-            &self.deform_weights,
-            &format!("{at}.deform_weights"),
-            recipe,
-        )?;
-        self.space_time
-            .as_ref()
-            .map_or(Ok(()), |s| s.validate(&format!("{at}.space-time")))
+        rows(&self.deform_weights, &format!("{at}.deform_weights"), recipe)?;
+        self.space_time.as_ref().map_or(Ok(()), |s| s.validate(&format!("{at}.space-time")))
     }
 }
 
@@ -253,8 +234,7 @@ impl SpaceTimeEntry {
         match self.a.value() {
             Some(OneOrMany::One(a)) => positive(*a, &format!("{at}.a"))?,
             Some(OneOrMany::Many(a)) => {
-                a.iter()
-                    .try_for_each(|&a| positive(a, &format!("{at}.a")))?;
+                a.iter().try_for_each(|&a| positive(a, &format!("{at}.a")))?;
             }
             None => {}
         }
@@ -267,43 +247,27 @@ fn known_shape(name: &str, at: &str, recipe: &Recipe) -> Result<(), Problem> {
         return Ok(());
     }
     let hint = did_you_mean(name, recipe.shapes.keys().map(String::as_str));
-    Err(Problem::new(
-        at,
-        format!("no shape is called `{name}`{hint}"),
-    ))
+    Err(Problem::new(at, format!("no shape is called `{name}`{hint}")))
 }
 
 fn rows(rows: &Weights, at: &str, recipe: &Recipe) -> Result<(), Problem> {
     for (feature, row) in rows {
         let at = join(at, feature);
         if feature != "default" && !recipe.features.iter().any(|f| f.name == *feature) {
-            let names = recipe
-                .features
-                .iter()
-                .map(|f| f.name.as_str())
-                .chain(["default"]);
+            let names = recipe.features.iter().map(|f| f.name.as_str()).chain(["default"]);
             let hint = did_you_mean(feature, names);
-            return Err(Problem::new(
-                at,
-                format!("no feature is called `{feature}`{hint}"),
-            ));
+            return Err(Problem::new(at, format!("no feature is called `{feature}`{hint}")));
         }
         for (shape, &w) in row {
             let at = join(&at, shape);
             known_shape(shape, &at, recipe)?;
             finite(&[w], &at)?;
             if w < 0.0 {
-                return Err(Problem::new(
-                    at,
-                    format!("got {w}; a weight is not negative"),
-                ));
+                return Err(Problem::new(at, format!("got {w}; a weight is not negative")));
             }
         }
         if row.values().sum::<f64>() <= 0.0 {
-            return Err(Problem::new(
-                at,
-                "the weights sum to zero; give one of them more",
-            ));
+            return Err(Problem::new(at, "the weights sum to zero; give one of them more"));
         }
     }
     Ok(())

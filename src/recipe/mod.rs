@@ -114,10 +114,7 @@ impl Recipe {
         self.grid.validate()?;
         features::validate(&self.features, &self.shapes)?;
         if !self.morph.name.is_empty() {
-            return Err(Problem::new(
-                "morph.name",
-                "only hybrids have a name; remove it",
-            ));
+            return Err(Problem::new("morph.name", "only hybrids have a name; remove it"));
         }
         self.morph.validate("morph", self)?;
         for (i, hybrid) in self.hybrids.iter().enumerate() {
@@ -140,10 +137,7 @@ impl Recipe {
     fn stands_alone(&self, name: &str, at: &str) -> Result<(), Problem> {
         let Some(shape) = self.shapes.get(name) else {
             let hint = did_you_mean(name, self.shapes.keys().map(String::as_str));
-            return Err(Problem::new(
-                at,
-                format!("no shape is called `{name}`{hint}"),
-            ));
+            return Err(Problem::new(at, format!("no shape is called `{name}`{hint}")));
         };
         match shape.place {
             PlainOr::Plain(_) => Ok(()),

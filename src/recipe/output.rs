@@ -36,10 +36,7 @@ impl GridEntry {
 
     pub(super) fn validate(&self) -> Result<(), Problem> {
         if self.resolution.is_some() && self.voxel.is_some() {
-            return Err(Problem::new(
-                "grid",
-                "both `resolution` and `voxel`; give one of them",
-            ));
+            return Err(Problem::new("grid", "both `resolution` and `voxel`; give one of them"));
         }
         for (key, n) in [("resolution", self.resolution), ("preview", self.preview)] {
             if let Some(n) = n.filter(|n| !(4..=FINEST).contains(n)) {
@@ -53,10 +50,7 @@ impl GridEntry {
         if (0.0..=4.0).contains(&padding) {
             Ok(())
         } else {
-            Err(Problem::new(
-                "grid.padding",
-                format!("got {padding}; expected 0 to 4"),
-            ))
+            Err(Problem::new("grid.padding", format!("got {padding}; expected 0 to 4")))
         }
     }
 }

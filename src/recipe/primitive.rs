@@ -182,10 +182,7 @@ pub(super) fn deform(twist: f64, taper: f64, bend: f64, at: &str) -> Result<(), 
 /// Whether all numbers are finite and of a size that arithmetic survives.
 pub(super) fn finite(x: &[f64], at: &str) -> Result<(), Problem> {
     match x.iter().find(|v| !v.is_finite() || v.abs() > 1e9) {
-        Some(v) => Err(Problem::new(
-            at,
-            format!("got {v}; expected a number of at most 1e9"),
-        )),
+        Some(v) => Err(Problem::new(at, format!("got {v}; expected a number of at most 1e9"))),
         None => Ok(()),
     }
 }
@@ -193,11 +190,7 @@ pub(super) fn finite(x: &[f64], at: &str) -> Result<(), Problem> {
 /// Whether a length or ratio is above zero.
 pub(super) fn positive(x: f64, at: &str) -> Result<(), Problem> {
     finite(&[x], at)?;
-    if x > 0.0 {
-        Ok(())
-    } else {
-        Err(Problem::new(at, format!("got {x}; expected more than 0")))
-    }
+    if x > 0.0 { Ok(()) } else { Err(Problem::new(at, format!("got {x}; expected more than 0"))) }
 }
 
 fn frame(center: &[f64; 3], rotate: &[f64; 3], at: &str) -> Result<(), Problem> {
@@ -206,8 +199,7 @@ fn frame(center: &[f64; 3], rotate: &[f64; 3], at: &str) -> Result<(), Problem> 
 }
 
 fn sizes(size: &[f64; 3], at: &str) -> Result<(), Problem> {
-    size.iter()
-        .try_for_each(|&s| positive(s, &format!("{at}.size")))
+    size.iter().try_for_each(|&s| positive(s, &format!("{at}.size")))
 }
 
 fn round(r: f64, most: f64, at: &str) -> Result<(), Problem> {
@@ -225,26 +217,17 @@ fn rod(from: &[f64; 3], to: &[f64; 3], radius: f64, at: &str) -> Result<f64, Pro
     finite(from, &format!("{at}.from"))?;
     finite(to, &format!("{at}.to"))?;
     positive(radius, &format!("{at}.radius"))?;
-    let length = (0..3)
-        .map(|i| (to[i] - from[i]).powi(2))
-        .sum::<f64>()
-        .sqrt();
+    let length = (0..3).map(|i| (to[i] - from[i]).powi(2)).sum::<f64>().sqrt();
     if length > 1e-6 {
         Ok(length)
     } else {
-        Err(Problem::new(
-            at,
-            "`from` and `to` are the same point; a rod needs a length",
-        ))
+        Err(Problem::new(at, "`from` and `to` are the same point; a rod needs a length"))
     }
 }
 
 fn polygon(p: &[[f64; 2]], at: &str) -> Result<(), Problem> {
     if !(3..=64).contains(&p.len()) {
-        return Err(Problem::new(
-            at,
-            format!("{} corners; expected 3 to 64", p.len()),
-        ));
+        return Err(Problem::new(at, format!("{} corners; expected 3 to 64", p.len())));
     }
     p.iter().try_for_each(|c| finite(c, at))?;
     let n = p.len();
@@ -263,10 +246,7 @@ fn polygon(p: &[[f64; 2]], at: &str) -> Result<(), Problem> {
         })
         .sum();
     if left + right < 3 || (left > 0 && right > 0) || round.abs() > 6.5 {
-        return Err(Problem::new(
-            at,
-            "not convex; give its corners once round, none turned in",
-        ));
+        return Err(Problem::new(at, "not convex; give its corners once round, none turned in"));
     }
     Ok(())
 }

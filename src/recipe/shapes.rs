@@ -132,10 +132,7 @@ impl ThickenEntry {
     /// The thickness and the shells it is for, from either way of writing it.
     pub fn of(entry: &PlainOr<f64, ThickenEntry>) -> Self {
         match entry {
-            PlainOr::Plain(mm) => Self {
-                mm: *mm,
-                which: ThickenWhich::Open,
-            },
+            PlainOr::Plain(mm) => Self { mm: *mm, which: ThickenWhich::Open },
             PlainOr::Table(t) => *t,
         }
     }
@@ -164,10 +161,7 @@ impl ShapeEntry {
         match (&self.mesh, &self.solid) {
             (None, None) => return Err(Problem::new(at, "no source: give `mesh` or `solid`")),
             (Some(_), Some(_)) => {
-                return Err(Problem::new(
-                    at,
-                    "both `mesh` and `solid`; give one of them",
-                ));
+                return Err(Problem::new(at, "both `mesh` and `solid`; give one of them"));
             }
             (None, Some(solid)) => self.validate_solid(solid, at)?,
             (Some(_), None) => {}

@@ -103,24 +103,14 @@ impl Solid {
     /// # Errors
     /// The first part that has no meaning, by its key.
     pub fn validate(&self, at: &str) -> Result<(), Problem> {
-        let key = if at.is_empty() {
-            "parts".to_owned()
-        } else {
-            format!("{at}.parts")
-        };
+        let key = if at.is_empty() { "parts".to_owned() } else { format!("{at}.parts") };
         if self.parts.is_empty() {
             return Err(Problem::new(key, "a solid needs at least one part"));
         }
         if self.parts[0].op == Op::Cut {
-            return Err(Problem::new(
-                format!("{key}[0].op"),
-                "the first part has nothing to cut",
-            ));
+            return Err(Problem::new(format!("{key}[0].op"), "the first part has nothing to cut"));
         }
-        self.parts
-            .iter()
-            .enumerate()
-            .try_for_each(|(i, p)| p.validate(&format!("{key}[{i}]")))
+        self.parts.iter().enumerate().try_for_each(|(i, p)| p.validate(&format!("{key}[{i}]")))
     }
 }
 
@@ -145,10 +135,9 @@ impl Part {
         primitive.validate(&format!("{at}.{}", primitive.key()))?;
         deform(self.twist_deg, self.taper, self.bend_deg, at)?;
         match (self.op, self.blend) {
-            (Op::Blend, None) => Err(Problem::new(
-                at,
-                "op = \"blend\" needs `blend`, the fillet's width in mm",
-            )),
+            (Op::Blend, None) => {
+                Err(Problem::new(at, "op = \"blend\" needs `blend`, the fillet's width in mm"))
+            }
             (Op::Blend, Some(w)) => positive(w, &format!("{at}.blend")),
             (_, Some(_)) => Err(Problem::new(
                 format!("{at}.blend"),
@@ -165,9 +154,7 @@ mod tests {
     use std::path::Path;
 
     fn error(text: &str) -> String {
-        parse_solid(text, Path::new("s.toml"))
-            .unwrap_err()
-            .to_string()
+        parse_solid(text, Path::new("s.toml")).unwrap_err().to_string()
     }
 
     const SEAT: &str = "kind = \"solid\"\n[[parts]]\nname = \"seat\"\n";
@@ -198,9 +185,7 @@ prism = {{ polygon = [[0, 0], [0, 10], [10, 0]], center = [0, 0, 0], height = 5 
 
     #[test]
     fn names_file_line_key_and_meaning() {
-        let e = error(&format!(
-            "{SEAT}box = {{ centre = [0, 0, 440], size = [4, 4, 3] }}"
-        ));
+        let e = error(&format!("{SEAT}box = {{ centre = [0, 0, 440], size = [4, 4, 3] }}"));
         assert!(e.contains("s.toml:4") && e.contains("parts[0].box"), "{e}");
         assert!(e.contains("did you mean `center`?"), "{e}");
     }
@@ -210,34 +195,16 @@ prism = {{ polygon = [[0, 0], [0, 10], [10, 0]], center = [0, 0, 0], height = 5 
         for (body, why) in [
             ("", "no shape"),
             ("box = { center = [0,0,0], size = [0,1,1] }", "more than 0"),
-            (
-                "box = { center = [0,0,nan], size = [1,1,1] }",
-                "parts[0].box.center",
-            ),
-            (
-                "box = { center = [0,0,0], size = [1,1,1], round = 2 }",
-                "0 to 0.5",
-            ),
-            (
-                "capsule = { from = [0,0,0], to = [0,0,0], radius = 2 }",
-                "same point",
-            ),
-            (
-                "prism = { polygon = [[0,0],[1,0]], center = [0,0,0], height = 5 }",
-                "2 corners",
-            ),
+            ("box = { center = [0,0,nan], size = [1,1,1] }", "parts[0].box.center"),
+            ("box = { center = [0,0,0], size = [1,1,1], round = 2 }", "0 to 0.5"),
+            ("capsule = { from = [0,0,0], to = [0,0,0], radius = 2 }", "same point"),
+            ("prism = { polygon = [[0,0],[1,0]], center = [0,0,0], height = 5 }", "2 corners"),
             (
                 "prism = { polygon = [[0,0],[4,0],[1,1],[0,4]], center = [0,0,0], height = 5 }",
                 "not convex",
             ),
-            (
-                "box = { center = [0,0,0], size = [1,1,1] }\nop = \"blend\"",
-                "fillet",
-            ),
-            (
-                "box = { center = [0,0,0], size = [1,1,1] }\nop = \"cut\"",
-                "nothing to cut",
-            ),
+            ("box = { center = [0,0,0], size = [1,1,1] }\nop = \"blend\"", "fillet"),
+            ("box = { center = [0,0,0], size = [1,1,1] }\nop = \"cut\"", "nothing to cut"),
         ] {
             let e = error(&format!("{SEAT}{body}"));
             assert!(e.contains(why), "{body}: {e}");

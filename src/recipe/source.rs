@@ -20,10 +20,7 @@ pub struct Problem {
 impl Problem {
     /// A problem at a key.
     pub fn new(at: impl Into<String>, why: impl Into<String>) -> Self {
-        Self {
-            at: at.into(),
-            why: why.into(),
-        }
+        Self { at: at.into(), why: why.into() }
     }
 }
 
@@ -51,11 +48,7 @@ fn place(file: &Path, line: &Option<usize>) -> String {
 }
 
 fn colon(at: &str) -> String {
-    if at.is_empty() {
-        String::new()
-    } else {
-        format!("{at}: ")
-    }
+    if at.is_empty() { String::new() } else { format!("{at}: ") }
 }
 
 /// Largest recipe or solid that is read, bytes.
@@ -72,10 +65,7 @@ pub fn read_text(path: &Path) -> Result<String, String> {
         return Err("is no regular file".to_owned());
     }
     if about.len() > LARGEST {
-        return Err(format!(
-            "has {} bytes; at most {LARGEST} are read",
-            about.len()
-        ));
+        return Err(format!("has {} bytes; at most {LARGEST} are read", about.len()));
     }
     fs::read_to_string(path).map_err(fail)
 }
@@ -98,20 +88,9 @@ impl Source {
     /// # Errors
     /// Bad grammar, an unknown key (with the nearest known one), a wrong type.
     pub fn read<T: DeserializeOwned>(text: &str, file: &Path) -> Result<(T, Self), RecipeError> {
-        let json = file
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("json"));
-        let mut source = Self {
-            file: file.to_owned(),
-            text: text.to_owned(),
-            places: Vec::new(),
-        };
-        if json {
-            source.read_json()
-        } else {
-            source.read_toml()
-        }
-        .map(|t| (t, source))
+        let json = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        let mut source = Self { file: file.to_owned(), text: text.to_owned(), places: Vec::new() };
+        if json { source.read_json() } else { source.read_toml() }.map(|t| (t, source))
     }
 
     /// A recipe that was never written down, such as a command line: no file, no lines.
@@ -121,11 +100,7 @@ impl Source {
 
     /// A text of which neither keys nor lines are to be looked up, because a program wrote it.
     pub fn unplaced(text: String, file: &Path) -> Self {
-        Self {
-            file: file.to_owned(),
-            text,
-            places: Vec::new(),
-        }
+        Self { file: file.to_owned(), text, places: Vec::new() }
     }
 
     /// The name the text was given.
@@ -140,12 +115,7 @@ impl Source {
 
     /// Adds file and line to a problem.
     pub fn locate(&self, p: Problem) -> RecipeError {
-        RecipeError {
-            file: self.file.clone(),
-            line: self.line_of(&p.at),
-            at: p.at,
-            why: p.why,
-        }
+        RecipeError { file: self.file.clone(), line: self.line_of(&p.at), at: p.at, why: p.why }
     }
 
     /// The line of a key, or of the nearest key above it that is there.
@@ -161,22 +131,14 @@ impl Source {
     }
 
     fn line_at(&self, offset: usize) -> usize {
-        1 + self
-            .text
-            .bytes()
-            .take(offset)
-            .filter(|&b| b == b'\n')
-            .count()
+        1 + self.text.bytes().take(offset).filter(|&b| b == b'\n').count()
     }
 
     /// The key with the smallest span that holds the byte.
     fn key_at(&self, offset: usize) -> String {
         let holds = self.places.iter().filter(|(_, r)| r.contains(&offset));
         // of equal spans the last is the deepest
-        let key = holds
-            .rev()
-            .min_by_key(|(_, r)| r.len())
-            .map(|(k, _)| k.clone());
+        let key = holds.rev().min_by_key(|(_, r)| r.len()).map(|(k, _)| k.clone());
         key.unwrap_or_default()
     }
 
@@ -241,19 +203,9 @@ impl Source {
 
 /// `above.name`, with the name in quotes where it is not a bare key.
 pub(crate) fn join(above: &str, name: &str) -> String {
-    let bare = name
-        .chars()
-        .all(|c| c.is_alphanumeric() || c == '_' || c == '-');
-    let name = if bare {
-        name.to_owned()
-    } else {
-        format!("{name:?}")
-    };
-    if above.is_empty() {
-        name
-    } else {
-        format!("{above}.{name}")
-    }
+    let bare = name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-');
+    let name = if bare { name.to_owned() } else { format!("{name:?}") };
+    if above.is_empty() { name } else { format!("{above}.{name}") }
 }
 
 /// A parser's message in one line, with the name that was probably meant.
@@ -265,11 +217,7 @@ pub(super) fn explain(message: &str) -> String {
         Some(word) if unknown => {
             let known: Vec<&str> = ticks.collect();
             let hint = did_you_mean(word, known.iter().copied());
-            let what = if message.starts_with("unknown field") {
-                "key"
-            } else {
-                "value"
-            };
+            let what = if message.starts_with("unknown field") { "key" } else { "value" };
             if known.is_empty() {
                 format!("unknown {what} `{word}`")
             } else if hint.is_empty() {

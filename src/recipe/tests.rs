@@ -41,9 +41,7 @@ picture = "hybrid-{t}.png"
 "#;
 
 fn parse(text: &str) -> Result<Recipe, String> {
-    Recipe::parse(text, Path::new("r.toml"))
-        .map(|(r, _)| r)
-        .map_err(|e| e.to_string())
+    Recipe::parse(text, Path::new("r.toml")).map(|(r, _)| r).map_err(|e| e.to_string())
 }
 
 #[test]
@@ -52,10 +50,7 @@ fn the_contracts_example_is_read() {
     assert_eq!(r.shapes["dining"].up, Some(UpAxis::Y));
     assert_eq!(r.shapes["lounge"].thicken, Some(PlainOr::Plain(6.0)));
     let feature = &r.features[0];
-    assert_eq!(
-        feature.morph.as_ref().unwrap().t.as_ref().unwrap().0,
-        Ease::Power(2.0)
-    );
+    assert_eq!(feature.morph.as_ref().unwrap().t.as_ref().unwrap().0, Ease::Power(2.0));
     assert_eq!(feature.on["lounge"].twist_deg, Some(20.0));
     assert_eq!(r.morph.method, Some(MethodEntry::Graft));
     assert_eq!(r.morph.inner, Some(InnerEntry::Grow));
@@ -112,31 +107,11 @@ fn errors_tell_file_line_key_and_cause() {
             "resolutoin",
             "grid.resolutoin: unknown key `resolutoin`; did you mean `resolution`?",
         ),
-        (
-            "resolution = 256",
-            "resolution = 256\nvoxel = 3",
-            "grid: both",
-        ),
-        (
-            "resolution = 256",
-            "resolution = \"fine\"",
-            "r.toml:4: grid.resolution: invalid type",
-        ),
-        (
-            "unit = \"cm\"",
-            "unit = \"ft\"",
-            "shapes.dining.unit: unknown value `ft`",
-        ),
-        (
-            "twist_deg = 20.0",
-            "twist = 20.0",
-            "features[0].on.lounge.twist: unknown key `twist`",
-        ),
-        (
-            "size = [90, 90, 300]",
-            "size = [90, 90]",
-            "features[0].on.lounge.box.size",
-        ),
+        ("resolution = 256", "resolution = 256\nvoxel = 3", "grid: both"),
+        ("resolution = 256", "resolution = \"fine\"", "r.toml:4: grid.resolution: invalid type"),
+        ("unit = \"cm\"", "unit = \"ft\"", "shapes.dining.unit: unknown value `ft`"),
+        ("twist_deg = 20.0", "twist = 20.0", "features[0].on.lounge.twist: unknown key `twist`"),
+        ("size = [90, 90, 300]", "size = [90, 90]", "features[0].on.lounge.box.size"),
         (
             "size = [90, 90, 300]",
             "size = [90, 90, -300]",
@@ -147,11 +122,7 @@ fn errors_tell_file_line_key_and_cause() {
             "features.on.longe",
             "no shape is called `longe`; did you mean `lounge`?",
         ),
-        (
-            "t = \"t^2\"",
-            "t = \"t^\"",
-            "r.toml:22: features[0].morph.t: got `t^`",
-        ),
+        ("t = \"t^2\"", "t = \"t^\"", "r.toml:22: features[0].morph.t: got `t^`"),
         (
             "method = \"graft\"",
             "method = \"grafd\"",
@@ -174,11 +145,7 @@ fn errors_tell_file_line_key_and_cause() {
             "weighting = { kind = \"smoth\" }",
             "morph.weighting.kind: unknown value `smoth`",
         ),
-        (
-            "hybrid-{t}.stl",
-            "hybrid-{x}.stl",
-            "output.mesh: got `hybrid-{x}.stl`",
-        ),
+        ("hybrid-{t}.stl", "hybrid-{x}.stl", "output.mesh: got `hybrid-{x}.stl`"),
         (
             "thicken = 6.0",
             "thicken = { mm = 6, what = \"all\" }",
@@ -189,10 +156,7 @@ fn errors_tell_file_line_key_and_cause() {
         let text = PAIR.replacen(from, to, 1);
         assert_ne!(text, PAIR, "{from}");
         let e = parse(&text).unwrap_err();
-        assert!(
-            e.contains(expected),
-            "{to}\n expected: {expected}\n got: {e}"
-        );
+        assert!(e.contains(expected), "{to}\n expected: {expected}\n got: {e}");
         assert!(e.starts_with("r.toml") && !e.contains('\n'), "{e}");
     }
 }
@@ -208,24 +172,13 @@ fn json_errors_have_places_too() {
 #[test]
 fn words_alone() {
     assert_eq!(word::<UpAxis>("y"), Ok(UpAxis::Y));
-    assert!(
-        word::<MethodEntry>("space-tim")
-            .unwrap_err()
-            .contains("did you mean `space-time`?")
-    );
+    assert!(word::<MethodEntry>("space-tim").unwrap_err().contains("did you mean `space-time`?"));
 }
 
 #[test]
 fn the_schema_names_every_key() {
     let schema = super::schema().to_string();
-    for key in [
-        "rotate_deg",
-        "space-time",
-        "deform_weights",
-        "crumbs",
-        "thicken",
-        "\"box\"",
-    ] {
+    for key in ["rotate_deg", "space-time", "deform_weights", "crumbs", "thicken", "\"box\""] {
         assert!(schema.contains(key), "{key}");
     }
 }

@@ -23,15 +23,10 @@ impl FromStr for TimeFn {
             return Ok(Self(Ease::Power(1.0)));
         }
         let Some(power) = dense.strip_prefix("t^") else {
-            let x = number(&dense)
-                .filter(|x| (0.0..=1.0).contains(x))
-                .ok_or_else(bad)?;
+            let x = number(&dense).filter(|x| (0.0..=1.0).contains(x)).ok_or_else(bad)?;
             return Ok(Self(Ease::Number(x)));
         };
-        let inner = power
-            .strip_prefix('(')
-            .and_then(|p| p.strip_suffix(')'))
-            .unwrap_or(power);
+        let inner = power.strip_prefix('(').and_then(|p| p.strip_suffix(')')).unwrap_or(power);
         let power = match inner.split_once('/') {
             Some((a, b)) if inner != power => number(a).zip(number(b)).map(|(a, b)| a / b),
             Some(_) => None,
@@ -149,9 +144,7 @@ impl FromStr for Times {
 fn range(from: f64, to: f64, step: f64, out: &mut Vec<f64>) -> Result<(), String> {
     let steps = (to - from) / step;
     if !steps.is_finite() || steps < 0.0 || steps > MOST as f64 {
-        return Err(format!(
-            "{from}:{to}:{step} is no range; write from:to:step as 0:1:0.25"
-        ));
+        return Err(format!("{from}:{to}:{step} is no range; write from:to:step as 0:1:0.25"));
     }
     // a billionth keeps 0.1 * 3 readable in file names and forgives the last step's round-off
     for i in 0..=(steps + 1e-9).floor() as usize {
@@ -240,9 +233,7 @@ mod tests {
         assert_eq!(f("t^2"), Ok(Ease::Power(2.0)));
         assert_eq!(f("t ^ (1/4)"), Ok(Ease::Power(0.25)));
         assert_eq!(f("0.3"), Ok(Ease::Number(0.3)));
-        for bad in [
-            "", "u", "t^", "t^-1", "t^0", "t^1/2", "t^(1/0)", "2", "nan", "t^inf",
-        ] {
+        for bad in ["", "u", "t^", "t^-1", "t^0", "t^1/2", "t^(1/0)", "2", "nan", "t^inf"] {
             assert!(f(bad).is_err(), "{bad}");
         }
     }

@@ -38,18 +38,10 @@ impl Names {
     }
 
     fn fill(&self, template: &str, hybrid: &str, t: f64) -> PathBuf {
-        let name = if hybrid.is_empty() {
-            &self.unnamed
-        } else {
-            hybrid
-        };
+        let name = if hybrid.is_empty() { &self.unnamed } else { hybrid };
         // a name is one file's, not a path
         let name = name.replace(['/', '\\'], "-");
-        self.folder.join(
-            template
-                .replace("{t}", &time_word(t))
-                .replace("{name}", &name),
-        )
+        self.folder.join(template.replace("{t}", &time_word(t)).replace("{name}", &name))
     }
 
     /// Whether each frame (hybrid's name, time) has files of its own that may be written.
@@ -91,10 +83,7 @@ pub fn time_word(t: f64) -> String {
 /// Makes the folder a file goes into.
 pub(super) fn folder_of(path: &Path) -> Result<(), RunError> {
     let folder = folder(path);
-    fs::create_dir_all(folder).map_err(|why| RunError::Place {
-        file: folder.to_owned(),
-        why,
-    })
+    fs::create_dir_all(folder).map_err(|why| RunError::Place { file: folder.to_owned(), why })
 }
 
 /// Puts a text file in place whole: written beside, then renamed.
@@ -105,10 +94,7 @@ pub fn place_text(path: &Path, text: &str, force: bool) -> Result<(), RunError> 
     folder_of(path)?;
     let fail = |why: std::io::Error| match why.kind() {
         std::io::ErrorKind::AlreadyExists if !force => RunError::Exists(path.to_owned()),
-        _ => RunError::Place {
-            file: path.to_owned(),
-            why,
-        },
+        _ => RunError::Place { file: path.to_owned(), why },
     };
     let mut builder = tempfile::Builder::new();
     // readable by others, as any file a program makes; the umask still has its say
@@ -116,11 +102,7 @@ pub fn place_text(path: &Path, text: &str, force: bool) -> Result<(), RunError> 
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = builder.tempfile_in(folder(path)).map_err(fail)?;
     file.write_all(text.as_bytes()).map_err(fail)?;
-    let placed = if force {
-        file.persist(path)
-    } else {
-        file.persist_noclobber(path)
-    };
+    let placed = if force { file.persist(path) } else { file.persist_noclobber(path) };
     placed.map(drop).map_err(|e| fail(e.error))
 }
 
@@ -149,10 +131,7 @@ mod tests {
     fn results_that_share_a_file_are_refused() {
         let frames = [("a".to_owned(), 0.0), ("a".to_owned(), 1.0)];
         let e = names().check(&frames, false).unwrap_err().to_string();
-        assert!(
-            e.contains("a.png") && e.contains("2 results") && e.contains("{t}"),
-            "{e}"
-        );
+        assert!(e.contains("a.png") && e.contains("2 results") && e.contains("{t}"), "{e}");
         assert!(names().check(&frames[..1], false).is_ok());
     }
 
@@ -161,10 +140,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("new/run.json");
         place_text(&path, "one", false).unwrap();
-        assert!(matches!(
-            place_text(&path, "two", false),
-            Err(RunError::Exists(_))
-        ));
+        assert!(matches!(place_text(&path, "two", false), Err(RunError::Exists(_))));
         assert_eq!(fs::read_to_string(&path).unwrap(), "one");
         place_text(&path, "two", true).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "two");

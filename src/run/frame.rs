@@ -100,26 +100,16 @@ pub fn make(
         let why = "nothing is inside: the result is empty at this time; try another method, inner \
                    function or finer cells";
         r.error = Some(why.to_owned());
-        return Ok(FrameResult {
-            mesh: None,
-            report: r,
-        });
+        return Ok(FrameResult { mesh: None, report: r });
     }
     job.stage("check");
-    let mesh = timed(&mut r.seconds.check, || {
-        swept(mesh, work.crumbs, &mut r.crumbs)
-    });
+    let mesh = timed(&mut r.seconds.check, || swept(mesh, work.crumbs, &mut r.crumbs));
     crate::job::check(job)?;
-    let options = Options {
-        self_intersections: work.verify,
-    };
+    let options = Options { self_intersections: work.verify };
     let health = timed(&mut r.seconds.check, || inspect(&mesh, &options));
     r.pieces = Some(timed(&mut r.seconds.check, || solid_pieces(&mesh)).solids as u64);
     r.health = Some(health);
-    Ok(FrameResult {
-        mesh: Some(mesh),
-        report: r,
-    })
+    Ok(FrameResult { mesh: Some(mesh), report: r })
 }
 
 fn swept(mesh: TriMesh, share: f64, crumbs: &mut check::Crumbs) -> TriMesh {

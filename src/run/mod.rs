@@ -93,10 +93,7 @@ pub fn run(
 ) -> Result<Report, RunError> {
     let start = Instant::now();
     let mut settings = settings.clone();
-    let shapes = scene
-        .shapes
-        .iter()
-        .fold(Aabb::EMPTY, |b, s| b.hull(s.bounds));
+    let shapes = scene.shapes.iter().fold(Aabb::EMPTY, |b, s| b.hull(s.bounds));
     settings.style.frame = settings.style.frame.or(Some(shapes));
     let settings = &settings;
     for variant in &scene.variants {
@@ -140,10 +137,7 @@ fn put(
     job.stage("write");
     let start = Instant::now();
     files::folder_of(&path)?;
-    let note = format!(
-        "recipe={}",
-        settings.recipe_hash.get(..16).unwrap_or_default()
-    );
+    let note = format!("recipe={}", settings.recipe_hash.get(..16).unwrap_or_default());
     match mesh::write(&path, mesh, &note, settings.force) {
         Ok(bytes) => {
             frame.file = Some(path.display().to_string());

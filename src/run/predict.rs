@@ -69,12 +69,7 @@ pub fn predict(draft: &Draft) -> Prediction {
     let tables: f64 = draft.boxes().iter().map(|b| blocks(b) * 4.0).sum();
     let shapes = areas.iter().map(|&a| bricks(a) * LEAF_BYTES).sum::<f64>() + tables;
     let times = |v: &MorphEntry| v.t.as_ref().map_or(1, |t| t.0.len() as u64);
-    let frames = draft
-        .recipe()
-        .variants()
-        .iter()
-        .map(|(_, v)| times(v))
-        .sum();
+    let frames = draft.recipe().variants().iter().map(|(_, v)| times(v)).sum();
     total(frames, &Lattice::covering(&draft.domain(), h), size, shapes)
 }
 
@@ -90,11 +85,8 @@ pub fn predict_one(area: f64, lattice: &Lattice) -> Prediction {
 }
 
 fn total(frames: u64, lattice: &Lattice, size: Size, shapes: f64) -> Prediction {
-    let bricks: f64 = lattice
-        .size
-        .iter()
-        .map(|&n| (f64::from(n) / f64::from(BRICK)).ceil())
-        .product();
+    let bricks: f64 =
+        lattice.size.iter().map(|&n| (f64::from(n) / f64::from(BRICK)).ceil()).product();
     let memory = BASE_BYTES
         + shapes
         + bricks * 16.0

@@ -142,9 +142,6 @@ impl Report {
 
     /// Whether every mesh there is can be printed.
     pub fn printable(&self) -> bool {
-        self.frames
-            .iter()
-            .filter_map(|f| f.health.as_ref())
-            .all(|h| h.printable)
+        self.frames.iter().filter_map(|f| f.health.as_ref()).all(|h| h.printable)
     }
 }

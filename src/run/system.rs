@@ -16,11 +16,7 @@ pub fn available_memory() -> Option<u64> {
 /// What a control group leaves of its limit, bytes.
 fn group_limit() -> Option<u64> {
     let number = |file: &str| -> Option<u64> {
-        fs::read_to_string(format!("/sys/fs/cgroup/{file}"))
-            .ok()?
-            .trim()
-            .parse()
-            .ok()
+        fs::read_to_string(format!("/sys/fs/cgroup/{file}")).ok()?.trim().parse().ok()
     };
     Some(number("memory.max")?.saturating_sub(number("memory.current").unwrap_or(0)))
 }
@@ -28,11 +24,7 @@ fn group_limit() -> Option<u64> {
 /// The number of kibibytes behind a label, in bytes.
 fn kib(text: &str, label: &str) -> Option<u64> {
     let line = text.lines().find(|l| l.starts_with(label))?;
-    line.split_whitespace()
-        .nth(1)?
-        .parse::<u64>()
-        .ok()
-        .map(|k| k * 1024)
+    line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|k| k * 1024)
 }
 
 #[cfg(test)]

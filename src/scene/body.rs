@@ -24,11 +24,7 @@ impl Body {
     pub fn solid(solid: &Solid, at: &str) -> Result<Self, Problem> {
         let mut parts = Vec::new();
         for (i, part) in solid.parts.iter().enumerate() {
-            let at = if at.is_empty() {
-                format!("parts[{i}]")
-            } else {
-                format!("{at}.parts[{i}]")
-            };
+            let at = if at.is_empty() { format!("parts[{i}]") } else { format!("{at}.parts[{i}]") };
             let (element, round) = elements::part(part, &at)?;
             let join = match part.op {
                 Op::Add => Join::Add,
@@ -36,11 +32,7 @@ impl Body {
                 Op::Blend => Join::Blend(part.blend.unwrap_or(0.0)),
             };
             for element in images(element, part.mirror) {
-                parts.push(SolidPart {
-                    element,
-                    round,
-                    join,
-                });
+                parts.push(SolidPart { element, round, join });
             }
         }
         Ok(Self::Solid(parts))

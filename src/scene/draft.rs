@@ -58,13 +58,7 @@ impl Draft {
         }
         placed.sort_by(|a, b| a.name.cmp(&b.name));
         let step = step(&recipe.grid, longest(&placed));
-        Ok(Self {
-            recipe,
-            source,
-            beside: beside.to_owned(),
-            placed,
-            step,
-        })
+        Ok(Self { recipe, source, beside: beside.to_owned(), placed, step })
     }
 
     /// Side of a cell, mm.
@@ -107,13 +101,7 @@ impl Draft {
     /// What is wrong in the recipe or a file, by its key; cancelled.
     pub fn build(self, job: &dyn Job) -> Result<Scene, SceneError> {
         let (padding, step) = (self.padding(), self.step);
-        let Self {
-            recipe,
-            source,
-            beside,
-            placed,
-            ..
-        } = self;
+        let Self { recipe, source, beside, placed, .. } = self;
         let locate = |p: Problem| SceneError::Bad(source.locate(p));
         let box_ = hull(&placed);
         fits(&Lattice::covering(&box_.grow(padding), step)).map_err(locate)?;
@@ -134,13 +122,7 @@ impl Draft {
             let made = start.elapsed().as_secs_f64();
             let (field, volume) = live::sampled(&*exact, step, job)?;
             let seconds = [made, start.elapsed().as_secs_f64() - made];
-            shapes.push(LiveShape {
-                name,
-                field,
-                volume,
-                bounds,
-                seconds,
-            });
+            shapes.push(LiveShape { name, field, volume, bounds, seconds });
         }
         let variants = recipe
             .variants()
@@ -150,21 +132,12 @@ impl Draft {
             .map_err(locate)?;
         let mut domain = Aabb::EMPTY;
         for v in &variants {
-            let morph = v
-                .morph(0.5)
-                .map_err(|e| locate(Problem::new("morph", e.to_string())))?;
+            let morph = v.morph(0.5).map_err(|e| locate(Problem::new("morph", e.to_string())))?;
             domain = domain.hull(morph.domain());
         }
         let lattice = Lattice::covering(&domain.grow(padding), step);
         fits(&lattice).map_err(locate)?;
-        Ok(Scene {
-            name: recipe.name,
-            shapes,
-            variants,
-            lattice,
-            notes,
-            inputs,
-        })
+        Ok(Scene { name: recipe.name, shapes, variants, lattice, notes, inputs })
     }
 }
 

@@ -14,9 +14,7 @@ pub(super) fn rotation(deg: [f64; 3]) -> DQuat {
 
 /// The element of a primitive, deformed along its axis; `at` is the primitive's key.
 pub(super) fn element(p: Primitive<'_>, deform: Deform, at: &str) -> Result<Element, Problem> {
-    build(p)
-        .and_then(|e| e.deformed(deform))
-        .map_err(|e| Problem::new(at, e.to_string()))
+    build(p).and_then(|e| e.deformed(deform)).map_err(|e| Problem::new(at, e.to_string()))
 }
 
 fn build(p: Primitive<'_>) -> Result<Element, ElementError> {
@@ -27,13 +25,7 @@ fn build(p: Primitive<'_>) -> Result<Element, ElementError> {
         Primitive::Capsule(c) => Element::capsule(v(c.from), v(c.to), c.radius),
         Primitive::Ellipsoid(e) => {
             let half = v(e.size) * 0.5;
-            Element::new(
-                Shape::Ellipsoid,
-                v(e.center),
-                rotation(e.rotate_deg),
-                half,
-                Deform::NONE,
-            )
+            Element::new(Shape::Ellipsoid, v(e.center), rotation(e.rotate_deg), half, Deform::NONE)
         }
         Primitive::Prism(p) => {
             let turn = rotation(p.rotate_deg);
@@ -63,11 +55,7 @@ fn area(p: &[DVec2]) -> f64 {
 
 /// The deformation of a part, radians.
 pub(super) fn deform(twist_deg: f64, taper: f64, bend_deg: f64) -> Deform {
-    Deform {
-        twist: twist_deg.to_radians(),
-        taper,
-        bend: bend_deg.to_radians(),
-    }
+    Deform { twist: twist_deg.to_radians(), taper, bend: bend_deg.to_radians() }
 }
 
 /// The element of a solid's part and its rounding, mm; `at` is the part's key.

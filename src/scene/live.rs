@@ -53,35 +53,20 @@ pub(super) fn load(
     let (body, input, story) = match (&entry.mesh, &entry.solid) {
         (Some(file), _) => mesh(entry, &beside.join(file), at)?,
         (None, Some(PlainOr::Plain(file))) => solid_file(&beside.join(file), at)?,
-        (None, Some(PlainOr::Table(solid))) => (
-            Body::solid(solid, &format!("{at}.solid"))?,
-            None,
-            "solid".to_owned(),
-        ),
+        (None, Some(PlainOr::Table(solid))) => {
+            (Body::solid(solid, &format!("{at}.solid"))?, None, "solid".to_owned())
+        }
         (None, None) => return Err(Problem::new(at, "no source: give `mesh` or `solid`")),
     };
     let body = place(body, entry, like);
     let shells = body.shells();
     let bounds = shells.bounds();
     if bounds.is_empty() || !bounds.is_finite() {
-        return Err(Problem::new(
-            at,
-            "the shape is empty: it has no triangle with a size",
-        ));
+        return Err(Problem::new(at, "the shape is empty: it has no triangle with a size"));
     }
     let size = bounds.size();
-    let note = format!(
-        "{name}: {story}; {:.0} x {:.0} x {:.0} mm",
-        size.x, size.y, size.z
-    );
-    Ok(Placed {
-        name: name.to_owned(),
-        area: shells.area(),
-        body,
-        bounds,
-        note,
-        input,
-    })
+    let note = format!("{name}: {story}; {:.0} x {:.0} x {:.0} mm", size.x, size.y, size.z);
+    Ok(Placed { name: name.to_owned(), area: shells.area(), body, bounds, note, input })
 }
 
 fn mesh(
@@ -105,12 +90,7 @@ fn mesh(
     let loaded = read(path, assume).map_err(|e| Problem::new(&at, e.to_string()))?;
     let input = digest(path).map_err(|e| Problem::new(&at, format!("{}: {e}", path.display())))?;
     let summary = loaded.found.summary().replace('\n', "; ");
-    let story = format!(
-        "{}, {} up, unit {}: {summary}",
-        path.display(),
-        loaded.up,
-        loaded.unit
-    );
+    let story = format!("{}, {} up, unit {}: {summary}", path.display(), loaded.up, loaded.unit);
     Ok((Body::Mesh(loaded.mesh), Some(input), story))
 }
 
@@ -121,11 +101,7 @@ fn solid_file(path: &Path, at: &str) -> Result<(Body, Option<Input>, String), Pr
     let solid = recipe::parse_solid(&text, path).map_err(|e| fail(e.to_string()))?;
     let body = Body::solid(&solid, "").map_err(|e| fail(format!("{}: {e}", path.display())))?;
     let input = digest(path).map_err(|e| fail(format!("{}: {e}", path.display())))?;
-    Ok((
-        body,
-        Some(input),
-        format!("{}, solid of {} parts", path.display(), solid.parts.len()),
-    ))
+    Ok((body, Some(input), format!("{}, solid of {} parts", path.display(), solid.parts.len())))
 }
 
 /// What ends the making of a field.
@@ -165,10 +141,7 @@ pub(super) fn exact(
                 other => Stop::Problem(Problem::new(at, other.to_string())),
             };
             let (field, report) = MeshField::new(&mesh, &options(entry), job).map_err(fail)?;
-            let notes = report
-                .summary()
-                .into_iter()
-                .map(|n| format!("{}: {n}", placed.name));
+            let notes = report.summary().into_iter().map(|n| format!("{}: {n}", placed.name));
             Ok((Arc::new(field), notes.collect()))
         }
     }
@@ -187,11 +160,7 @@ fn options(entry: &ShapeEntry) -> MeshOptions {
         SignEntry::Winding => Sign::Winding,
         SignEntry::Unsigned => Sign::Unsigned,
     };
-    MeshOptions {
-        thicken,
-        sign,
-        ..MeshOptions::default()
-    }
+    MeshOptions { thicken, sign, ..MeshOptions::default() }
 }
 
 /// The sampled form of a field at a fine step, mm.

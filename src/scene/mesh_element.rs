@@ -24,9 +24,7 @@ struct MeshForm {
 
 impl fmt::Debug for MeshForm {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.debug_struct("MeshForm")
-            .field("centre", &self.centre)
-            .finish_non_exhaustive()
+        f.debug_struct("MeshForm").field("centre", &self.centre).finish_non_exhaustive()
     }
 }
 
@@ -61,13 +59,8 @@ pub(super) fn read_all(
 }
 
 fn element(m: &MeshShape, beside: &Path, job: &dyn Job) -> Result<Element, String> {
-    let assume = Assume {
-        up: Some(Up::Z),
-        unit: Some(Unit::Mm),
-    };
-    let mesh = read(&beside.join(&m.file), assume)
-        .map_err(|e| e.to_string())?
-        .mesh;
+    let assume = Assume { up: Some(Up::Z), unit: Some(Unit::Mm) };
+    let mesh = read(&beside.join(&m.file), assume).map_err(|e| e.to_string())?.mesh;
     let own = mesh.bounds();
     let (field, _) =
         MeshField::new(&mesh, &MeshOptions::default(), job).map_err(|e| e.to_string())?;
@@ -75,11 +68,7 @@ fn element(m: &MeshShape, beside: &Path, job: &dyn Job) -> Result<Element, Strin
     if half.min_element() <= 0.0 {
         return Err(format!("{}: a flat mesh is no element", m.file.display()));
     }
-    let form = MeshForm {
-        field,
-        centre: own.centre(),
-        half,
-    };
+    let form = MeshForm { field, centre: own.centre(), half };
     let centre = m.center.map_or(own.centre(), DVec3::from_array);
     let size = m.size.map_or(half, |s| DVec3::from_array(s) * 0.5);
     let shape = Shape::Mesh(Arc::new(form));

@@ -91,8 +91,5 @@ fn digest(path: &Path) -> io::Result<Input> {
             n => hash.update(&chunk[..n]),
         }
     }
-    Ok(Input {
-        file: path.display().to_string(),
-        sha256: hex(&hash.finalize()),
-    })
+    Ok(Input { file: path.display().to_string(), sha256: hex(&hash.finalize()) })
 }

@@ -14,11 +14,7 @@ pub(super) struct Similarity {
 }
 
 impl Similarity {
-    pub const NONE: Self = Self {
-        scale: 1.0,
-        turn: DQuat::IDENTITY,
-        shift: DVec3::ZERO,
-    };
+    pub const NONE: Self = Self { scale: 1.0, turn: DQuat::IDENTITY, shift: DVec3::ZERO };
 
     pub fn point(&self, p: DVec3) -> DVec3 {
         self.shift + self.turn * (p * self.scale)
@@ -31,15 +27,8 @@ pub(super) fn place(body: Body, entry: &ShapeEntry, like: Option<Aabb>) -> Body 
     let turn = DQuat::from_rotation_z(entry.turn_deg.to_radians());
     let tall = body.bounds().size().z;
     // a body without height cannot be scaled to one; it is refused as empty later
-    let scale = entry
-        .height
-        .filter(|_| tall > 0.0)
-        .map_or(1.0, |h| h / tall);
-    let body = body.moved(&Similarity {
-        scale,
-        turn,
-        ..Similarity::NONE
-    });
+    let scale = entry.height.filter(|_| tall > 0.0).map_or(1.0, |h| h / tall);
+    let body = body.moved(&Similarity { scale, turn, ..Similarity::NONE });
     let now = body.bounds();
     let shift = match (&entry.place, like) {
         (PlainOr::Plain(Place::Floor), _) => -floor_point(&now),
@@ -47,14 +36,7 @@ pub(super) fn place(body: Body, entry: &ShapeEntry, like: Option<Aabb>) -> Body 
         _ => DVec3::ZERO,
     };
     let shift = shift + DVec3::from_array(entry.shift);
-    if shift == DVec3::ZERO {
-        body
-    } else {
-        body.moved(&Similarity {
-            shift,
-            ..Similarity::NONE
-        })
-    }
+    if shift == DVec3::ZERO { body } else { body.moved(&Similarity { shift, ..Similarity::NONE }) }
 }
 
 /// The middle of the box's lowest side.

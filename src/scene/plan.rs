@@ -23,17 +23,10 @@ pub(super) fn shape_names(entry: &MorphEntry, at: &str) -> Result<Vec<String>, P
             return Err(Problem::new(at, why));
         }
     };
-    let key = if entry.between.is_some() {
-        "between"
-    } else {
-        "among"
-    };
+    let key = if entry.between.is_some() { "between" } else { "among" };
     let at = format!("{at}.{key}");
     if names.len() < 2 {
-        return Err(Problem::new(
-            at,
-            format!("{} shape; a morph needs two or more", names.len()),
-        ));
+        return Err(Problem::new(at, format!("{} shape; a morph needs two or more", names.len())));
     }
     for (i, name) in names.iter().enumerate() {
         if names[..i].contains(name) {
@@ -52,10 +45,8 @@ pub(super) fn method(
 ) -> Result<MethodEntry, Problem> {
     let asked = entry.method.unwrap_or_default();
     let featured = !recipe.features.is_empty();
-    let needs = matches!(
-        asked,
-        MethodEntry::Graft | MethodEntry::Group | MethodEntry::FeatureVolume
-    );
+    let needs =
+        matches!(asked, MethodEntry::Graft | MethodEntry::Group | MethodEntry::FeatureVolume);
     let at = format!("{at}.method");
     if needs && !featured {
         let why = "this method needs features; add [[features]], or use \"space-time\"";
@@ -85,10 +76,7 @@ pub(super) fn plan(
     let names: Vec<&str> = shapes.iter().map(|s| s.name.as_str()).collect();
     let plain = matches!(method, MethodEntry::Linear | MethodEntry::SpaceTime);
     let used: &[FeatureEntry] = if plain { &[] } else { &recipe.features };
-    let rows = Rows {
-        entry,
-        names: &names,
-    };
+    let rows = Rows { entry, names: &names };
     let mut features = Vec::with_capacity(used.len());
     for (i, f) in used.iter().enumerate() {
         let elements = corresponding(f, method, &names, meshes, &format!("features[{i}]"))?;
@@ -107,20 +95,14 @@ pub(super) fn plan(
     Ok(Plan {
         shapes: shapes
             .iter()
-            .map(|s| Part {
-                name: s.name.clone(),
-                field: s.field.clone(),
-            })
+            .map(|s| Part { name: s.name.clone(), field: s.field.clone() })
             .collect(),
         features,
         course,
         blend,
         inner: inner(method, entry.inner),
         weighting: weighting(method, entry, blend, tall),
-        sharp: Weighting::Smooth {
-            epsilon: 0.01 * tall,
-            power: 4.0,
-        },
+        sharp: Weighting::Smooth { epsilon: 0.01 * tall, power: 4.0 },
         frames: frames(entry, &names, at)?,
         space_time: space_time(entry.space_time.as_ref(), names.len(), at)?,
     })
@@ -187,34 +169,20 @@ fn inner(method: MethodEntry, asked: Option<InnerEntry>) -> Inner {
 /// The weighting asked for, with widths from the mean height (GRAFT, section Weights).
 fn weighting(method: MethodEntry, entry: &MorphEntry, blend: Blend, tall: f64) -> Weighting {
     let asked = match &entry.weighting {
-        None => WeightingEntry {
-            kind: WeightingKind::Smooth,
-            epsilon: None,
-            power: None,
-        },
-        Some(PlainOr::Plain(kind)) => WeightingEntry {
-            kind: *kind,
-            epsilon: None,
-            power: None,
-        },
+        None => WeightingEntry { kind: WeightingKind::Smooth, epsilon: None, power: None },
+        Some(PlainOr::Plain(kind)) => WeightingEntry { kind: *kind, epsilon: None, power: None },
         Some(PlainOr::Table(t)) => *t,
     };
     let baseline = method == MethodEntry::FeatureVolume;
     match asked.kind {
-        WeightingKind::InverseSquare => Weighting::InverseSquare {
-            epsilon: asked.epsilon.unwrap_or(0.02 * tall),
-        },
-        _ if baseline => Weighting::InverseSquare {
-            epsilon: 0.02 * tall,
-        },
+        WeightingKind::InverseSquare => {
+            Weighting::InverseSquare { epsilon: asked.epsilon.unwrap_or(0.02 * tall) }
+        }
+        _ if baseline => Weighting::InverseSquare { epsilon: 0.02 * tall },
         WeightingKind::Transfinite => Weighting::Transfinite,
         WeightingKind::Smooth => {
             // leaks of one feature's field into another's erode thin parts; positions may flow
-            let (share, power) = if blend == Blend::Fields {
-                (0.01, 4.0)
-            } else {
-                (0.03, 2.0)
-            };
+            let (share, power) = if blend == Blend::Fields { (0.01, 4.0) } else { (0.03, 2.0) };
             Weighting::Smooth {
                 epsilon: asked.epsilon.unwrap_or(share * tall),
                 power: asked.power.unwrap_or(power),
@@ -227,17 +195,11 @@ fn weighting(method: MethodEntry, entry: &MorphEntry, blend: Blend, tall: f64) -
 fn frames(entry: &MorphEntry, names: &[&str], at: &str) -> Result<Frames, Problem> {
     match entry.frames.as_deref() {
         None | Some("average" | "dominant") => Ok(Frames::Average),
-        Some(name) => names
-            .iter()
-            .position(|&n| n == name)
-            .map(Frames::Of)
-            .ok_or_else(|| {
-                let why = format!(
-                    "`{name}` takes no part in this morph; it is of {}",
-                    names.join(", ")
-                );
-                Problem::new(format!("{at}.frames"), why)
-            }),
+        Some(name) => names.iter().position(|&n| n == name).map(Frames::Of).ok_or_else(|| {
+            let why =
+                format!("`{name}` takes no part in this morph; it is of {}", names.join(", "));
+            Problem::new(format!("{at}.frames"), why)
+        }),
     }
 }
 
@@ -264,10 +226,5 @@ fn space_time(
         Some(FormEntry::HalfCylinders) => Form::HalfCylinders,
     };
     let a3 = entry.a3.unwrap_or(SpaceTime::default().a3);
-    Ok(SpaceTime {
-        form,
-        a0: entry.a0.value().copied(),
-        a,
-        a3,
-    })
+    Ok(SpaceTime { form, a0: entry.a0.value().copied(), a, a3 })
 }

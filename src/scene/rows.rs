@@ -15,11 +15,8 @@ impl Rows<'_> {
     /// The row under `name`; shapes that it does not name have no share.
     fn row(&self, rows: &Weights, name: &str) -> Option<Vec<f64>> {
         let row = rows.get(name)?;
-        let all: Vec<f64> = self
-            .names
-            .iter()
-            .map(|&n| row.get(n).copied().unwrap_or(0.0))
-            .collect();
+        let all: Vec<f64> =
+            self.names.iter().map(|&n| row.get(n).copied().unwrap_or(0.0)).collect();
         // a row over other shapes only, as a hybrid of fewer shapes has, says nothing here
         (all.iter().sum::<f64>() > 0.0).then_some(all)
     }
@@ -34,38 +31,21 @@ impl Rows<'_> {
     }
 
     pub fn feature(&self, f: &FeatureEntry, elements: Vec<Element>) -> Feature {
-        let own = f
-            .morph
-            .as_ref()
-            .and_then(|m| m.t.as_ref())
-            .map(|t| t.0.clone());
+        let own = f.morph.as_ref().and_then(|m| m.t.as_ref()).map(|t| t.0.clone());
         let morph = match self.row(&self.entry.weights, &f.name) {
             Some(row) => Course::Fixed(row),
             None => paired(self.rest(), own),
         };
         let offset = f.morph.as_ref().map_or(0.0, |m| m.offset);
-        Feature {
-            name: f.name.clone(),
-            elements,
-            deform: morph.clone(),
-            morph,
-            offset,
-        }
+        Feature { name: f.name.clone(), elements, deform: morph.clone(), morph, offset }
     }
 
     /// Weights of the frames: own row, `default` row, own time function, else those all features
     /// share, so that the parts of a hybrid stay in proportion.
     pub fn deform(&self, f: &FeatureEntry, shared: Option<&Vec<f64>>) -> Course {
         let rows = &self.entry.deform_weights;
-        let own = f
-            .morph
-            .as_ref()
-            .and_then(|m| m.deform.as_ref())
-            .map(|t| t.0.clone());
-        if let Some(row) = self
-            .row(rows, &f.name)
-            .or_else(|| self.row(rows, "default"))
-        {
+        let own = f.morph.as_ref().and_then(|m| m.deform.as_ref()).map(|t| t.0.clone());
+        if let Some(row) = self.row(rows, &f.name).or_else(|| self.row(rows, "default")) {
             return Course::Fixed(row);
         }
         match shared {

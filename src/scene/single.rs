@@ -44,11 +44,7 @@ impl Single {
         let at = crate::recipe::join("shapes", name);
         let placed = live::load(name, &entry, beside, None, &at).map_err(locate)?;
         let lattice = cells(grid, placed.bounds, thickness(&entry)).map_err(locate)?;
-        Ok(Self {
-            placed,
-            entry,
-            lattice,
-        })
+        Ok(Self { placed, entry, lattice })
     }
 
     /// The box round it, mm.
@@ -91,8 +87,5 @@ impl Single {
 
 /// How far sheets grow beyond their mesh, mm.
 fn thickness(entry: &ShapeEntry) -> f64 {
-    entry
-        .thicken
-        .as_ref()
-        .map_or(0.0, |t| crate::recipe::ThickenEntry::of(t).mm / 2.0)
+    entry.thicken.as_ref().map_or(0.0, |t| crate::recipe::ThickenEntry::of(t).mm / 2.0)
 }

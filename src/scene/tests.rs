@@ -32,12 +32,12 @@ on.c.box = {{ center = [0, 0, 11], size = [12, 7, 22] }}
 fn scene(rest: &str) -> Result<Scene, String> {
     let text = recipe(rest);
     let (recipe, source) = Recipe::parse(&text, Path::new("r.toml")).map_err(|e| e.to_string())?;
-    Draft::open(recipe, source, Path::new(""), &Quiet)
-        .and_then(|d| d.build(&Quiet))
-        .map_err(|e| match e {
+    Draft::open(recipe, source, Path::new(""), &Quiet).and_then(|d| d.build(&Quiet)).map_err(|e| {
+        match e {
             SceneError::Bad(e) => e.to_string(),
             SceneError::Cancelled(e) => e.to_string(),
-        })
+        }
+    })
 }
 
 #[test]
@@ -49,28 +49,12 @@ fn shapes_stand_where_they_are_told() {
             && (b.max - glam::DVec3::from(max)).abs().max_element() < slack
     };
     let of = |name: &str| s.shapes.iter().find(|s| s.name == name).unwrap();
-    assert!(near(
-        of("a").bounds,
-        [-10.0, -10.0, 0.0],
-        [10.0, 10.0, 10.0]
-    ));
-    assert!(near(
-        of("b").bounds,
-        [-10.0, -10.0, 0.0],
-        [10.0, 10.0, 30.0]
-    ));
+    assert!(near(of("a").bounds, [-10.0, -10.0, 0.0], [10.0, 10.0, 10.0]));
+    assert!(near(of("b").bounds, [-10.0, -10.0, 0.0], [10.0, 10.0, 30.0]));
     // half the size, turned by a right angle, on the floor, then up by 1
     assert!(near(of("c").bounds, [-5.0, -2.5, 1.0], [5.0, 2.5, 21.0]));
-    assert!(
-        (of("a").volume / 4000.0 - 1.0).abs() < 0.05,
-        "{}",
-        of("a").volume
-    );
-    assert!(
-        s.lattice
-            .bounds()
-            .contains(glam::DVec3::new(10.0, 10.0, 30.0))
-    );
+    assert!((of("a").volume / 4000.0 - 1.0).abs() < 0.05, "{}", of("a").volume);
+    assert!(s.lattice.bounds().contains(glam::DVec3::new(10.0, 10.0, 30.0)));
 }
 
 #[test]
@@ -91,27 +75,14 @@ fn mean_volumes_follow_time_and_weights() {
     assert!((v.mean_volume(0.25) - (0.75 * a + 0.25 * c)).abs() < 1e-9);
     assert_eq!(v.times, [0.0, 0.25, 1.0]);
     let s = scene("[morph]\namong = [\"a\", \"c\"]\nweights.body = { c = 2 }").unwrap();
-    assert_eq!(
-        s.variants[0].mean_volume(0.5),
-        c,
-        "one feature's row is the whole's"
-    );
+    assert_eq!(s.variants[0].mean_volume(0.5), c, "one feature's row is the whole's");
 }
 
 #[test]
 fn methods_are_chosen_by_what_is_there() {
     use crate::recipe::MethodEntry::{Graft, Group};
-    assert_eq!(
-        scene("[morph]\nbetween = [\"a\", \"c\"]").unwrap().variants[0].method,
-        Graft
-    );
-    assert_eq!(
-        scene("[morph]\namong = [\"a\", \"b\", \"c\"]")
-            .unwrap()
-            .variants[0]
-            .method,
-        Group
-    );
+    assert_eq!(scene("[morph]\nbetween = [\"a\", \"c\"]").unwrap().variants[0].method, Graft);
+    assert_eq!(scene("[morph]\namong = [\"a\", \"b\", \"c\"]").unwrap().variants[0].method, Group);
 }
 
 #[test]
@@ -119,22 +90,13 @@ fn what_cannot_be_is_told_by_its_key() {
     for (rest, expected) in [
         ("", "morph: which shapes?"),
         ("[morph]\namong = [\"a\"]", "morph.among: 1 shape"),
-        (
-            "[morph]\namong = [\"a\", \"c\", \"a\"]",
-            "morph.among: `a` is there twice",
-        ),
-        (
-            "[morph]\nmethod = \"graft\"\namong = [\"a\", \"b\", \"c\"]",
-            "here are 3; use \"group\"",
-        ),
+        ("[morph]\namong = [\"a\", \"c\", \"a\"]", "morph.among: `a` is there twice"),
+        ("[morph]\nmethod = \"graft\"\namong = [\"a\", \"b\", \"c\"]", "here are 3; use \"group\""),
         (
             "[morph]\nbetween = [\"a\", \"c\"]\nweights.body = { a = 1 }\nt = [0, 1]",
             "morph.t: nothing depends on t",
         ),
-        (
-            "[morph]\nbetween = [\"a\", \"c\"]\nframes = \"b\"",
-            "morph.frames: `b` takes no part",
-        ),
+        ("[morph]\nbetween = [\"a\", \"c\"]\nframes = \"b\"", "morph.frames: `b` takes no part"),
         (
             "[morph]\nbetween = [\"a\", \"c\"]\nspace-time.a = [1, 2, 3]",
             "morph.space-time.a: 3 numbers for 2 shapes",
@@ -158,10 +120,7 @@ fn what_cannot_be_is_told_by_its_key() {
         ),
     ] {
         let e = scene(rest).err().unwrap_or_default();
-        assert!(
-            e.contains(expected),
-            "{rest}\n expected: {expected}\n got: {e}"
-        );
+        assert!(e.contains(expected), "{rest}\n expected: {expected}\n got: {e}");
     }
 }
 
@@ -179,15 +138,9 @@ fn cells_too_fine_for_a_file_are_refused() {
 #[test]
 fn dominant_frames_are_those_of_the_heavier_shape() {
     let inside = |frames: &str, t: f64, z: f64| {
-        let s = scene(&format!(
-            "[morph]\nbetween = [\"a\", \"c\"]\nframes = \"{frames}\""
-        ));
+        let s = scene(&format!("[morph]\nbetween = [\"a\", \"c\"]\nframes = \"{frames}\""));
         let morph = s.unwrap().variants[0].morph(t).unwrap();
-        morph
-            .at(t, &Quiet)
-            .unwrap()
-            .value(glam::DVec3::new(0.0, 0.0, z))
-            < 0.0
+        morph.at(t, &Quiet).unwrap().value(glam::DVec3::new(0.0, 0.0, z)) < 0.0
     };
     // a is 10 high in a frame of 12, c reaches 20/22 of its own; in a's frame both end below 10.5,
     // in the mean frame at 0.4 a ends near 13.8

@@ -34,10 +34,8 @@ impl Variant {
     ) -> Result<Self, Problem> {
         let names = plan::shape_names(entry, at)?;
         let method = plan::method(entry, names.len(), recipe, at)?;
-        let live: Vec<&LiveShape> = names
-            .iter()
-            .filter_map(|n| shapes.iter().find(|s| s.name == *n))
-            .collect();
+        let live: Vec<&LiveShape> =
+            names.iter().filter_map(|n| shapes.iter().find(|s| s.name == *n)).collect();
         let plan = plan::plan(entry, method, &live, meshes, recipe, at)?;
         build(plan.clone()).map_err(|e| Problem::new(at, e.to_string()))?;
         let loose = matches!(method, MethodEntry::Graft | MethodEntry::Group);
@@ -45,10 +43,7 @@ impl Variant {
             name: entry.name.clone(),
             method,
             times: times(entry, &plan, at)?,
-            crumbs: recipe
-                .output
-                .crumbs
-                .unwrap_or(if loose { 0.02 } else { 0.0 }),
+            crumbs: recipe.output.crumbs.unwrap_or(if loose { 0.02 } else { 0.0 }),
             volumes: live.iter().map(|s| s.volume).collect(),
             dominant: entry.frames.as_deref() == Some("dominant"),
             plan,
@@ -69,13 +64,7 @@ impl Variant {
 
     /// The weighted mean of the shapes' volumes at `t`, mm³.
     pub fn mean_volume(&self, t: f64) -> f64 {
-        self.plan
-            .course
-            .at(t)
-            .iter()
-            .zip(&self.volumes)
-            .map(|(w, v)| w * v)
-            .sum()
+        self.plan.course.at(t).iter().zip(&self.volumes).map(|(w, v)| w * v).sum()
     }
 }
 
@@ -102,9 +91,7 @@ fn times(entry: &MorphEntry, plan: &Plan, at: &str) -> Result<Vec<f64>, Problem>
     let moving = if plan.features.is_empty() {
         moves(&plan.course)
     } else {
-        plan.features
-            .iter()
-            .any(|f| moves(&f.morph) || moves(&f.deform))
+        plan.features.iter().any(|f| moves(&f.morph) || moves(&f.deform))
     };
     match &entry.t {
         None => Ok(vec![0.5]),

@@ -38,20 +38,12 @@ pub struct Ball {
 impl Ball {
     /// A ball that nothing has been applied to.
     pub fn new(centre: DVec3, radius: f64) -> Self {
-        Self {
-            centre,
-            radius,
-            stretch: 1.0,
-        }
+        Self { centre, radius, stretch: 1.0 }
     }
 
     /// The ball after a map that takes the centre to `centre` and stretches by at most `by`.
     pub fn through(self, centre: DVec3, by: f64) -> Self {
-        Self {
-            centre,
-            radius: self.radius * by,
-            stretch: self.stretch * by,
-        }
+        Self { centre, radius: self.radius * by, stretch: self.stretch * by }
     }
 }
 
@@ -76,11 +68,7 @@ impl Barr {
             curvature: 0.0,
             reach: 0.0,
         };
-        let side = if deform.twist == 0.0 {
-            half.y
-        } else {
-            half.x.hypot(half.y)
-        };
+        let side = if deform.twist == 0.0 { half.y } else { half.x.hypot(half.y) };
         barr.reach = side * barr.widest();
         let most = TIGHTEST / barr.reach;
         barr.curvature = (deform.bend * 0.5 / half_length).clamp(-most, most);
@@ -91,10 +79,7 @@ impl Barr {
     pub fn check(deform: &Deform, half: DVec3) -> Result<(), WarpError> {
         let most = 2.0 * half.z * TIGHTEST / Self::new(deform, half).reach;
         if deform.bend.abs() > most {
-            return Err(WarpError::Thick {
-                bend: deform.bend,
-                most,
-            });
+            return Err(WarpError::Thick { bend: deform.bend, most });
         }
         Ok(())
     }
@@ -142,12 +127,7 @@ impl Barr {
     /// A box round the deformed body of half sizes `half`.
     pub fn bounds(&self, half: DVec3) -> Aabb {
         let wide = self.widest();
-        let x = wide
-            * if self.twist == 0.0 {
-                half.x
-            } else {
-                half.x.hypot(half.y)
-            };
+        let x = wide * if self.twist == 0.0 { half.x } else { half.x.hypot(half.y) };
         let k = self.curvature.abs();
         if k == 0.0 {
             return Aabb::around(DVec3::ZERO, DVec3::new(x, self.reach, half.z));
@@ -158,11 +138,7 @@ impl Barr {
         let high = 1.0 / k - end.cos() * if end.cos() >= 0.0 { inner } else { outer };
         let long = outer * end.min(std::f64::consts::FRAC_PI_2).sin();
         let (low, high) = (-self.reach, high.max(self.reach));
-        let (low, high) = if self.curvature > 0.0 {
-            (low, high)
-        } else {
-            (-high, -low)
-        };
+        let (low, high) = if self.curvature > 0.0 { (low, high) } else { (-high, -low) };
         Aabb::new(DVec3::new(-x, low, -long), DVec3::new(x, high, long))
     }
 
@@ -173,10 +149,7 @@ impl Barr {
     /// the body in straight coordinates, so a distance divided by `stretch` and cut off at
     /// `cap / stretch` is 1-Lipschitz over all of space.
     pub(crate) fn near(&self, half: DVec3) -> Near {
-        let mut near = Near {
-            stretch: 1.0,
-            cap: f64::INFINITY,
-        };
+        let mut near = Near { stretch: 1.0, cap: f64::INFINITY };
         let widest = self.widest();
         let body = half.x.hypot(half.y);
         if self.twist != 0.0 || self.slope != 0.0 {
@@ -219,9 +192,7 @@ impl Barr {
     }
 
     fn twisted(&self, v: DVec3) -> DVec3 {
-        DVec2::from_angle(self.twist * self.clamp(v.z))
-            .rotate(v.truncate())
-            .extend(v.z)
+        DVec2::from_angle(self.twist * self.clamp(v.z)).rotate(v.truncate()).extend(v.z)
     }
 
     /// METHODS H with y and z exchanged, written so that nothing is lost as the curvature vanishes.
@@ -234,10 +205,7 @@ impl Barr {
         let (sin, cos) = (k * on).sin_cos();
         let half = (k * on * 0.5).sin();
         let beyond = z - on;
-        (
-            y * cos + 2.0 * half * half / k + sin * beyond,
-            sin / k - y * sin + cos * beyond,
-        )
+        (y * cos + 2.0 * half * half / k + sin * beyond, sin / k - y * sin + cos * beyond)
     }
 
     fn unbend(&self, y: f64, z: f64) -> (f64, f64) {
@@ -275,35 +243,21 @@ impl Barr {
             };
         }
         let (y, z) = self.unbend(b.centre.y, b.centre.z);
-        let angle = (self.curvature * b.centre.z)
-            .atan2(1.0 - self.curvature * b.centre.y)
-            .abs();
+        let angle = (self.curvature * b.centre.z).atan2(1.0 - self.curvature * b.centre.y).abs();
         let straight = angle - (b.radius / far).asin() >= k * self.half_length;
-        let norm = if straight {
-            1.0
-        } else {
-            (1.0 / (k * (far - b.radius))).max(1.0)
-        };
+        let norm = if straight { 1.0 } else { (1.0 / (k * (far - b.radius))).max(1.0) };
         b.through(DVec3::new(b.centre.x, y, z), norm)
     }
 
     fn twist_norm(&self, b: &Ball) -> f64 {
-        if self.beyond(b) {
-            1.0
-        } else {
-            twist_norm(self.twist, perp(b))
-        }
+        if self.beyond(b) { 1.0 } else { twist_norm(self.twist, perp(b)) }
     }
 
     /// Smallest and largest section over the ball, and how fast the section changes there.
     fn sections(&self, b: &Ball) -> (DVec2, f64) {
         let low = self.section(self.clamp(b.centre.z - b.radius));
         let high = self.section(self.clamp(b.centre.z + b.radius));
-        let slope = if self.beyond(b) {
-            0.0
-        } else {
-            self.slope.abs()
-        };
+        let slope = if self.beyond(b) { 0.0 } else { self.slope.abs() };
         (DVec2::new(low.min(high), low.max(high)), slope)
     }
 
@@ -351,10 +305,7 @@ mod tests {
     #[test]
     fn the_bend_is_an_arc() {
         // a quarter circle of length 400: radius 400 / (pi/2), ends turned by 45 degrees
-        let barr = Barr::new(
-            &Deform::new(0.0, 1.0, std::f64::consts::FRAC_PI_2).unwrap(),
-            HALF,
-        );
+        let barr = Barr::new(&Deform::new(0.0, 1.0, std::f64::consts::FRAC_PI_2).unwrap(), HALF);
         let r = 400.0 / std::f64::consts::FRAC_PI_2;
         let end = barr.push(DVec3::new(0.0, 0.0, 200.0));
         let s = std::f64::consts::FRAC_1_SQRT_2;
@@ -373,18 +324,9 @@ mod tests {
 
     #[test]
     fn senseless_numbers_are_refused() {
-        assert!(matches!(
-            Deform::new(f64::NAN, 1.0, 0.0),
-            Err(WarpError::Twist(_))
-        ));
-        assert!(matches!(
-            Deform::new(0.0, 0.0, 0.0),
-            Err(WarpError::Taper(_))
-        ));
-        assert!(matches!(
-            Deform::new(0.0, 1.0, 6.3),
-            Err(WarpError::Bend(_))
-        ));
+        assert!(matches!(Deform::new(f64::NAN, 1.0, 0.0), Err(WarpError::Twist(_))));
+        assert!(matches!(Deform::new(0.0, 0.0, 0.0), Err(WarpError::Taper(_))));
+        assert!(matches!(Deform::new(0.0, 1.0, 6.3), Err(WarpError::Bend(_))));
         let thick = Deform::new(0.0, 1.0, 3.0).unwrap();
         assert!(Barr::check(&thick, DVec3::splat(50.0)).is_err());
         assert!(Barr::check(&thick, HALF).is_ok());

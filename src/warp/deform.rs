@@ -49,11 +49,7 @@ impl Default for Deform {
 
 impl Deform {
     /// Leaves everything where it is.
-    pub const NONE: Self = Self {
-        twist: 0.0,
-        taper: 1.0,
-        bend: 0.0,
-    };
+    pub const NONE: Self = Self { twist: 0.0, taper: 1.0, bend: 0.0 };
 
     /// Checked: twist within ten turns, taper positive, bend less than a full turn.
     pub fn new(twist: f64, taper: f64, bend: f64) -> Result<Self, WarpError> {

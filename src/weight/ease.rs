@@ -67,18 +67,11 @@ impl Ease {
         for (at, w) in pairs.windows(2).enumerate() {
             let increases = w[0][0] < w[1][0];
             if !increases {
-                return Err(EaseError::Order {
-                    at: at + 1,
-                    before: w[0][0],
-                    after: w[1][0],
-                });
+                return Err(EaseError::Order { at: at + 1, before: w[0][0], after: w[1][0] });
             }
         }
         match pairs.iter().position(|p| !(0.0..=1.0).contains(&p[1])) {
-            Some(at) => Err(EaseError::Value {
-                at,
-                u: pairs[at][1],
-            }),
+            Some(at) => Err(EaseError::Value { at, u: pairs[at][1] }),
             None => Ok(Self::Table(pairs)),
         }
     }
@@ -104,10 +97,7 @@ impl Ease {
 
 fn interpolate(pairs: &[[f64; 2]], t: f64) -> f64 {
     let after = pairs.partition_point(|p| p[0] <= t);
-    match (
-        after.checked_sub(1).and_then(|i| pairs.get(i)),
-        pairs.get(after),
-    ) {
+    match (after.checked_sub(1).and_then(|i| pairs.get(i)), pairs.get(after)) {
         (Some([t0, u0]), Some([t1, u1])) => u0 + (u1 - u0) * ((t - t0) / (t1 - t0)),
         (Some([_, u]), None) | (None, Some([_, u])) => *u,
         (None, None) => t,
@@ -127,19 +117,11 @@ impl FromStr for Ease {
         if let Some(power) = bare.strip_prefix("t^") {
             let n = exponent(power).ok_or_else(form)?;
             let sound = n.is_finite() && n > 0.0;
-            return if sound {
-                Ok(Self::Power(n))
-            } else {
-                Err(EaseError::Power(text.to_owned()))
-            };
+            return if sound { Ok(Self::Power(n)) } else { Err(EaseError::Power(text.to_owned())) };
         }
         let u: f64 = bare.parse().map_err(|_| form())?;
         let sound = (0.0..=1.0).contains(&u);
-        if sound {
-            Ok(Self::Number(u))
-        } else {
-            Err(EaseError::Range(text.to_owned()))
-        }
+        if sound { Ok(Self::Number(u)) } else { Err(EaseError::Range(text.to_owned())) }
     }
 }
 
@@ -179,24 +161,12 @@ mod tests {
             assert!(text.parse::<Ease>().is_err(), "{text}");
         }
         assert!(matches!("t^0".parse::<Ease>(), Err(EaseError::Power(_))));
-        assert!(matches!(
-            "t^(1/0)".parse::<Ease>(),
-            Err(EaseError::Power(_))
-        ));
+        assert!(matches!("t^(1/0)".parse::<Ease>(), Err(EaseError::Power(_))));
         assert!(matches!("1.5".parse::<Ease>(), Err(EaseError::Range(_))));
-        assert!(matches!(
-            Ease::table(vec![[0.0, 0.0]]),
-            Err(EaseError::Short(1))
-        ));
-        assert!(matches!(
-            Ease::table(vec![[0.1, 0.0], [1.0, 1.0]]),
-            Err(EaseError::Ends(..))
-        ));
+        assert!(matches!(Ease::table(vec![[0.0, 0.0]]), Err(EaseError::Short(1))));
+        assert!(matches!(Ease::table(vec![[0.1, 0.0], [1.0, 1.0]]), Err(EaseError::Ends(..))));
         let back = vec![[0.0, 0.0], [0.5, 0.5], [0.5, 0.7], [1.0, 1.0]];
-        assert!(matches!(
-            Ease::table(back),
-            Err(EaseError::Order { at: 2, .. })
-        ));
+        assert!(matches!(Ease::table(back), Err(EaseError::Order { at: 2, .. })));
         assert!(matches!(
             Ease::table(vec![[0.0, 0.0], [1.0, 2.0]]),
             Err(EaseError::Value { at: 1, .. })
@@ -213,10 +183,7 @@ mod tests {
             );
         }
         let table = Ease::table(vec![[0.0, 0.0], [0.4, 0.9], [1.0, 1.0]]).unwrap();
-        assert_eq!(
-            [table.at(0.0), table.at(0.4), table.at(1.0)],
-            [0.0, 0.9, 1.0]
-        );
+        assert_eq!([table.at(0.0), table.at(0.4), table.at(1.0)], [0.0, 0.9, 1.0]);
         assert!((table.at(0.2) - 0.45).abs() < 1e-15);
     }
 }

@@ -44,9 +44,7 @@ impl Weighting {
     pub fn enclose(&self, d: &[Interval], out: &mut [Interval]) {
         match *self {
             Self::Smooth { .. } | Self::InverseSquare { .. } => {
-                shares(d, out, |d| {
-                    Interval::new(self.kernel(d.hi), self.kernel(d.lo))
-                });
+                shares(d, out, |d| Interval::new(self.kernel(d.hi), self.kernel(d.lo)));
             }
             Self::Transfinite => enclose_transfinite(d, out),
         }
@@ -99,8 +97,7 @@ fn normalise(out: &mut [f64]) {
     let most = out.iter().copied().fold(0.0, f64::max);
     let count = out.iter().filter(|w| **w == most).count().max(1);
     let share = 1.0 / count as f64;
-    out.iter_mut()
-        .for_each(|w| *w = if *w == most { share } else { 0.0 });
+    out.iter_mut().for_each(|w| *w = if *w == most { share } else { 0.0 });
 }
 
 /// Enclosures of the shares of kernels known as intervals.
@@ -130,9 +127,7 @@ fn enclose_transfinite(d: &[Interval], out: &mut [Interval]) {
     let inside = d.iter().any(|d| d.hi < 0.0);
     let outside = d.iter().all(|d| d.lo > 0.0);
     if inside {
-        shares(d, out, |d| {
-            Interval::new((-d.hi).max(0.0), (-d.lo).max(0.0))
-        });
+        shares(d, out, |d| Interval::new((-d.hi).max(0.0), (-d.lo).max(0.0)));
     } else {
         // Outside all features, or not known. A feature that is certainly left takes nothing inside
         // another and its inverse distance outside; one that may be touched takes anything.
@@ -157,14 +152,8 @@ mod tests {
     use proptest::prelude::*;
 
     const ALL: [Weighting; 4] = [
-        Weighting::Smooth {
-            epsilon: 27.0,
-            power: 2.0,
-        },
-        Weighting::Smooth {
-            epsilon: 9.0,
-            power: 4.0,
-        },
+        Weighting::Smooth { epsilon: 27.0, power: 2.0 },
+        Weighting::Smooth { epsilon: 9.0, power: 4.0 },
         Weighting::Transfinite,
         Weighting::InverseSquare { epsilon: 9.0 },
     ];
@@ -176,64 +165,35 @@ mod tests {
     }
 
     fn close(a: &[f64], b: &[f64]) {
-        assert!(
-            a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15),
-            "{a:?} {b:?}"
-        );
+        assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15), "{a:?} {b:?}");
     }
 
     #[test]
     fn known_values() {
         // phi = 1/4 one epsilon outside, 4 one epsilon inside
-        let w = Weighting::Smooth {
-            epsilon: 10.0,
-            power: 2.0,
-        };
+        let w = Weighting::Smooth { epsilon: 10.0, power: 2.0 };
         close(&weights(w, &[10.0, -10.0]), &[0.25 / 4.25, 4.0 / 4.25]);
-        close(
-            &weights(Weighting::Transfinite, &[-3.0, -1.0, 5.0]),
-            &[0.75, 0.25, 0.0],
-        );
+        close(&weights(Weighting::Transfinite, &[-3.0, -1.0, 5.0]), &[0.75, 0.25, 0.0]);
         // eq. 5 outside: the products of the others' distances, 12 : 6 : 4... of 2, 4, 6
         let s = 24.0 + 12.0 + 8.0;
-        close(
-            &weights(Weighting::Transfinite, &[2.0, 4.0, 6.0]),
-            &[24.0 / s, 12.0 / s, 8.0 / s],
-        );
-        close(
-            &weights(Weighting::Transfinite, &[0.0, 4.0, 0.0]),
-            &[0.5, 0.0, 0.5],
-        );
-        close(
-            &weights(Weighting::InverseSquare { epsilon: 1.0 }, &[-5.0, 1.0]),
-            &[0.8, 0.2],
-        );
+        close(&weights(Weighting::Transfinite, &[2.0, 4.0, 6.0]), &[24.0 / s, 12.0 / s, 8.0 / s]);
+        close(&weights(Weighting::Transfinite, &[0.0, 4.0, 0.0]), &[0.5, 0.0, 0.5]);
+        close(&weights(Weighting::InverseSquare { epsilon: 1.0 }, &[-5.0, 1.0]), &[0.8, 0.2]);
     }
 
     #[test]
     fn extremes_stay_weights() {
         for w in ALL {
-            for d in [
-                [f64::INFINITY; 2],
-                [f64::NEG_INFINITY; 2],
-                [1e300, -1e300],
-                [0.0, 0.0],
-            ] {
+            for d in [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2], [1e300, -1e300], [0.0, 0.0]] {
                 let got = weights(w, &d);
-                assert!(
-                    (got.iter().sum::<f64>() - 1.0).abs() < 1e-12,
-                    "{w:?} {d:?} {got:?}"
-                );
+                assert!((got.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{w:?} {d:?} {got:?}");
             }
         }
     }
 
     #[test]
     fn the_smooth_form_is_c1_through_the_surface() {
-        let w = Weighting::Smooth {
-            epsilon: 10.0,
-            power: 2.0,
-        };
+        let w = Weighting::Smooth { epsilon: 10.0, power: 2.0 };
         let at = |d: f64| weights(w, &[d, 7.0])[0];
         let h = 1e-6;
         assert!(((at(h) - at(0.0)) - (at(0.0) - at(-h))).abs() < 1e-12);

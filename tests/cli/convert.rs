@@ -24,31 +24,19 @@ fn shells_that_overlap_become_one_printable_solid() {
     // two boxes of 40 x 20 x 20 that share 20 x 20 x 20: together 60 x 20 x 20
     let mut text = block([-10.0, 0.0, 0.0], [20.0, 10.0, 10.0]);
     let shifted = |l: &str| match l.strip_prefix("f ") {
-        Some(f) => f.split(' ').fold("f".to_owned(), |t, i| {
-            format!("{t} {}", i.parse::<u32>().unwrap() + 8)
-        }),
+        Some(f) => f
+            .split(' ')
+            .fold("f".to_owned(), |t, i| format!("{t} {}", i.parse::<u32>().unwrap() + 8)),
         None => l.to_owned(),
     };
     for line in block([10.0, 0.0, 0.0], [20.0, 10.0, 10.0]).lines() {
         text += &(shifted(line) + "\n");
     }
     folder.put("two.obj", &text);
-    let args = [
-        "convert",
-        "two.obj",
-        "one.stl",
-        "--up",
-        "z",
-        "--resolution",
-        "60",
-        "--strict",
-    ];
+    let args = ["convert", "two.obj", "one.stl", "--up", "z", "--resolution", "60", "--strict"];
     folder.run(&args).ends(0);
     let h = health(&folder, "one.stl");
-    assert_eq!(
-        (&h["printable"], &h["components"]),
-        (&Value::Bool(true), &Value::from(1))
-    );
+    assert_eq!((&h["printable"], &h["components"]), (&Value::Bool(true), &Value::from(1)));
     // edges lose less than half a cell on every side: 24000 mm3 within 3%
     let volume = h["volume_mm3"].as_f64().unwrap();
     assert!((volume / 24000.0 - 1.0).abs() < 0.03, "{volume}");
@@ -61,17 +49,10 @@ fn shells_that_overlap_become_one_printable_solid() {
 fn a_solid_is_one_closed_piece_or_its_raw_shells() {
     let folder = Folder::new();
     folder.put("stool.toml", STOOL);
-    folder
-        .run(&["convert", "stool.toml", "stool.ply", "--resolution", "64"])
-        .ends(0);
+    folder.run(&["convert", "stool.toml", "stool.ply", "--resolution", "64"]).ends(0);
     let h = health(&folder, "stool.ply");
-    assert_eq!(
-        (&h["printable"], &h["components"]),
-        (&Value::Bool(true), &Value::from(1))
-    );
-    folder
-        .run(&["convert", "stool.toml", "raw.obj", "--shells"])
-        .ends(0);
+    assert_eq!((&h["printable"], &h["components"]), (&Value::Bool(true), &Value::from(1)));
+    folder.run(&["convert", "stool.toml", "raw.obj", "--shells"]).ends(0);
     let h = health(&folder, "raw.obj");
     assert_eq!(h["components"], 5, "a seat and four legs");
     assert_eq!(h["printable"], false, "they cut each other");
@@ -81,17 +62,11 @@ fn a_solid_is_one_closed_piece_or_its_raw_shells() {
 fn a_field_is_written_with_its_place() {
     let folder = Folder::new();
     folder.put("a.obj", &block([0.0; 3], [10.0; 3]));
-    folder
-        .run(&["convert", "a.obj", "a.npy", "--up", "z", "--voxel", "2.5"])
-        .ends(0);
+    folder.run(&["convert", "a.obj", "a.npy", "--up", "z", "--voxel", "2.5"]).ends(0);
     let about: Value =
         serde_json::from_str(&fs::read_to_string(folder.join("a.json")).unwrap()).unwrap();
-    let size: Vec<usize> = about["size"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|n| n.as_u64().unwrap() as usize)
-        .collect();
+    let size: Vec<usize> =
+        about["size"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap() as usize).collect();
     let bytes = fs::read(folder.join("a.npy")).unwrap();
     let start = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
     let values: Vec<f32> = bytes[start..]
@@ -107,23 +82,10 @@ fn a_field_is_written_with_its_place() {
 #[test]
 fn sheets_need_a_thickness() {
     let folder = Folder::new();
-    folder.put(
-        "sheet.obj",
-        "v 0 0 0\nv 100 0 0\nv 100 100 0\nv 0 100 0\nf 1 2 3 4\n",
-    );
-    let args = [
-        "convert",
-        "sheet.obj",
-        "out.stl",
-        "--up",
-        "z",
-        "--resolution",
-        "40",
-    ];
+    folder.put("sheet.obj", "v 0 0 0\nv 100 0 0\nv 100 100 0\nv 0 100 0\nf 1 2 3 4\n");
+    let args = ["convert", "sheet.obj", "out.stl", "--up", "z", "--resolution", "40"];
     folder.run(&args).fails(3, &["thicken"]);
     assert_eq!(folder.names(), ["sheet.obj"]);
-    folder
-        .run(&[&args[..], &["--thicken", "10"]].concat())
-        .ends(0);
+    folder.run(&[&args[..], &["--thicken", "10"]].concat()).ends(0);
     assert_eq!(health(&folder, "out.stl")["printable"], true);
 }

@@ -38,14 +38,10 @@ fn changed(from: &str, to: &str) -> Folder {
 #[test]
 fn a_missing_file() {
     let folder = folder();
-    folder
-        .run(&["check", "gone.obj"])
-        .fails(3, &["gone.obj", "cannot"]);
+    folder.run(&["check", "gone.obj"]).fails(3, &["gone.obj", "cannot"]);
     folder.run(&["run", "gone.toml"]).fails(3, &["gone.toml"]);
     folder.run(&["run", "."]).fails(3, &["no regular file"]);
-    folder
-        .run(&["morph", "low.obj", "gone.stl", "-o", "x.stl"])
-        .fails(3, &["gone.stl"]);
+    folder.run(&["morph", "low.obj", "gone.stl", "-o", "x.stl"]).fails(3, &["gone.stl"]);
     changed("tall.obj", "tal.obj")
         .run(&["run", "r.toml"])
         .fails(3, &["r.toml:8: shapes.tall.mesh: tal.obj"]);
@@ -55,82 +51,39 @@ fn a_missing_file() {
 fn a_wrong_key_with_what_was_meant() {
     changed("resolution", "resolutoin")
         .run(&["run", "r.toml"])
-        .fails(
-            3,
-            &[
-                "r.toml:3: grid.resolutoin: unknown key",
-                "did you mean `resolution`?",
-            ],
-        );
+        .fails(3, &["r.toml:3: grid.resolutoin: unknown key", "did you mean `resolution`?"]);
     folder()
         .run(&["run", "r.toml", "--set", "grid.resolutoin=3"])
-        .fails(
-            3,
-            &["r.toml: grid.resolutoin", "did you mean `resolution`?"],
-        );
+        .fails(3, &["r.toml: grid.resolutoin", "did you mean `resolution`?"]);
 }
 
 #[test]
 fn a_feature_without_a_partner() {
-    changed(
-        "on.tall.box = { center = [0, 0, 0], size = [12, 12, 32] }\n",
-        "",
-    )
-    .run(&["run", "r.toml"])
-    .fails(
-        3,
-        &["features[0].on", "feature `body` has no element on `tall`"],
-    );
+    changed("on.tall.box = { center = [0, 0, 0], size = [12, 12, 32] }\n", "")
+        .run(&["run", "r.toml"])
+        .fails(3, &["features[0].on", "feature `body` has no element on `tall`"]);
 }
 
 #[test]
 fn a_mesh_with_no_triangles() {
     let folder = folder();
     folder.put("low.obj", "v 0 0 0\nv 1 0 0\n");
-    folder
-        .run(&["run", "r.toml"])
-        .fails(3, &["r.toml:5", "low.obj", "no triangles"]);
-    folder
-        .run(&["convert", "low.obj", "x.stl"])
-        .fails(3, &["low.obj", "no triangles"]);
+    folder.run(&["run", "r.toml"]).fails(3, &["r.toml:5", "low.obj", "no triangles"]);
+    folder.run(&["convert", "low.obj", "x.stl"]).fails(3, &["low.obj", "no triangles"]);
     assert_eq!(folder.names(), ["low.obj", "r.toml", "tall.obj"]);
 }
 
 #[test]
 fn more_memory_than_allowed() {
     let folder = folder();
-    let args = [
-        "run",
-        "r.toml",
-        "--set",
-        "grid.resolution=1500",
-        "--max-memory",
-        "100M",
-    ];
+    let args = ["run", "r.toml", "--set", "grid.resolution=1500", "--max-memory", "100M"];
     folder.run(&args).fails(5, &["100 MB", "--max-memory"]);
-    let args = [
-        "run",
-        "r.toml",
-        "--set",
-        "grid.resolution=1500",
-        "--max-memory",
-        "100M",
-        "--dry-run",
-    ];
+    let args =
+        ["run", "r.toml", "--set", "grid.resolution=1500", "--max-memory", "100M", "--dry-run"];
     folder.run(&args).fails(5, &["100 MB"]);
-    let args = [
-        "convert",
-        "low.obj",
-        "x.stl",
-        "--voxel",
-        "0.002",
-        "--max-memory",
-        "1G",
-    ];
+    let args = ["convert", "low.obj", "x.stl", "--voxel", "0.002", "--max-memory", "1G"];
     folder.run(&args).fails(5, &["1.0 GB"]);
-    folder
-        .run(&["run", "r.toml", "--max-memory", "lots"])
-        .fails(2, &["lots"]);
+    folder.run(&["run", "r.toml", "--max-memory", "lots"]).fails(2, &["lots"]);
     assert_eq!(folder.names(), ["low.obj", "r.toml", "tall.obj"]);
 }
 
@@ -138,36 +91,19 @@ fn more_memory_than_allowed() {
 fn an_output_that_is_there() {
     let folder = folder();
     folder.put("x.stl", "mine");
-    let args = [
-        "morph",
-        "low.obj",
-        "tall.obj",
-        "-o",
-        "x.stl",
-        "--resolution",
-        "24",
-    ];
+    let args = ["morph", "low.obj", "tall.obj", "-o", "x.stl", "--resolution", "24"];
     folder.run(&args).fails(2, &["x.stl", "--force"]);
-    assert_eq!(
-        std::fs::read_to_string(folder.join("x.stl")).unwrap(),
-        "mine"
-    );
+    assert_eq!(std::fs::read_to_string(folder.join("x.stl")).unwrap(), "mine");
     folder.run(&[&args[..], &["--force"]].concat()).ends(0);
-    folder
-        .run(&["picture", "low.obj", "-o", "x.stl"])
-        .fails(2, &["png"]);
+    folder.run(&["picture", "low.obj", "-o", "x.stl"]).fails(2, &["png"]);
 }
 
 #[test]
 fn an_unknown_word() {
     let folder = folder();
     let args = ["morph", "low.obj", "tall.obj", "-o", "x.stl", "--method"];
-    folder
-        .run(&[&args[..], &["linaer"]].concat())
-        .fails(2, &["did you mean `linear`?"]);
-    folder
-        .run(&[&args[..], &["graft"]].concat())
-        .fails(2, &["features", "recipe"]);
+    folder.run(&[&args[..], &["linaer"]].concat()).fails(2, &["did you mean `linear`?"]);
+    folder.run(&[&args[..], &["graft"]].concat()).fails(2, &["features", "recipe"]);
     changed("[morph]", "[morph]\nmethod = \"grafd\"")
         .run(&["run", "r.toml"])
         .fails(3, &["morph.method", "did you mean `graft`?"]);
@@ -186,18 +122,12 @@ fn usage_that_cannot_be() {
     morph(&["x.doc"]).fails(3, &["x.doc", "stl"]);
     morph(&["x.stl", "--resolution", "1"]).fails(2, &["grid.resolution", "4 to"]);
     folder.run(&["morph", "low.obj", "-o", "x.stl"]).ends(2);
-    changed("t = [0.0, 1.0]", "t = [0.0, 0.0]")
-        .run(&["run", "r.toml"])
-        .fails(2, &["2 results"]);
-    changed("t = [0.0, 1.0]", "t = []")
-        .run(&["run", "r.toml"])
-        .fails(3, &["morph.t"]);
+    changed("t = [0.0, 1.0]", "t = [0.0, 0.0]").run(&["run", "r.toml"]).fails(2, &["2 results"]);
+    changed("t = [0.0, 1.0]", "t = []").run(&["run", "r.toml"]).fails(3, &["morph.t"]);
     changed("between = [\"low\", \"tall\"]\n", "")
         .run(&["run", "r.toml"])
         .fails(3, &["morph: which shapes?"]);
-    changed("version = 1", "version = 2")
-        .run(&["run", "r.toml"])
-        .fails(3, &["r.toml:1: version"]);
+    changed("version = 1", "version = 2").run(&["run", "r.toml"]).fails(3, &["r.toml:1: version"]);
 }
 
 #[test]

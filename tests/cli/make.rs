@@ -48,10 +48,7 @@ fn morph_makes_a_mesh_a_time_and_a_report() {
     ];
     assert_eq!(folder.names(), expected);
     let report = json(&folder, "h.run.json");
-    assert_eq!(
-        serde_json::from_str::<Value>(&ran.stdout()).unwrap(),
-        report
-    );
+    assert_eq!(serde_json::from_str::<Value>(&ran.stdout()).unwrap(), report);
     let frames = report["frames"].as_array().unwrap();
     assert_eq!(frames.len(), 3);
     for f in frames {
@@ -63,10 +60,7 @@ fn morph_makes_a_mesh_a_time_and_a_report() {
     for (f, volume) in [(&frames[0], 4000.0), (&frames[2], 3000.0)] {
         let got = f["health"]["volume_mm3"].as_f64().unwrap();
         assert!((got / volume - 1.0).abs() < 0.06, "{got} for {volume}");
-        assert!(
-            (f["volume_kept"].as_f64().unwrap() - 1.0).abs() < 0.06,
-            "{f}"
-        );
+        assert!((f["volume_kept"].as_f64().unwrap() - 1.0).abs() < 0.06, "{f}");
     }
     // laid over each other by their boxes, the second stands where the first does
     let x = frames[2]["health"]["bbox_mm"][1][0].as_f64().unwrap();
@@ -94,21 +88,10 @@ fn the_same_bytes_on_any_number_of_threads_and_from_the_written_recipe() {
         ]
     };
     folder.run(&args("1", "one.ply")).ends(0);
-    folder
-        .run(&[&args("3", "three.ply")[..], &["--recipe", "r.toml"]].concat())
-        .ends(0);
+    folder.run(&[&args("3", "three.ply")[..], &["--recipe", "r.toml"]].concat()).ends(0);
     let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
     assert_eq!(bytes("one.ply"), bytes("three.ply"));
-    folder
-        .run(&[
-            "run",
-            "r.toml",
-            "-o",
-            "out",
-            "--set",
-            "output.mesh=again.ply",
-        ])
-        .ends(0);
+    folder.run(&["run", "r.toml", "-o", "out", "--set", "output.mesh=again.ply"]).ends(0);
     let (a, b) = (json(&folder, "one.run.json"), json(&folder, "out/run.json"));
     assert_eq!(a["frames"][0]["health"], b["frames"][0]["health"]);
 }
@@ -116,20 +99,8 @@ fn the_same_bytes_on_any_number_of_threads_and_from_the_written_recipe() {
 #[test]
 fn a_dry_run_predicts_and_writes_nothing() {
     let folder = folder();
-    let args = [
-        "morph",
-        "low.obj",
-        "tall.obj",
-        "--up",
-        "z",
-        "--resolution",
-        "64",
-        "-o",
-        "h.stl",
-    ];
-    let ran = folder
-        .run(&[&args[..], &["--dry-run", "--json"]].concat())
-        .ends(0);
+    let args = ["morph", "low.obj", "tall.obj", "--up", "z", "--resolution", "64", "-o", "h.stl"];
+    let ran = folder.run(&[&args[..], &["--dry-run", "--json"]].concat()).ends(0);
     assert_eq!(folder.names(), ["low.obj", "tall.obj"]);
     let p: Value = serde_json::from_str(&ran.stdout()).unwrap();
     let made = folder.run(&[&args[..], &["--json"]].concat()).ends(0);
@@ -179,29 +150,18 @@ picture = "{name}.png"
 fn a_group_makes_every_hybrid_and_a_weight_of_one_gives_the_shape() {
     let folder = Folder::new();
     folder.put("g.toml", GROUP);
-    let ran = folder
-        .run(&["run", "g.toml", "-o", "out", "--strict"])
-        .ends(0);
+    let ran = folder.run(&["run", "g.toml", "-o", "out", "--strict"]).ends(0);
     let report = json(&folder, "out/run.json");
     let frames = report["frames"].as_array().unwrap();
-    let names: Vec<&str> = frames
-        .iter()
-        .map(|f| f["hybrid"].as_str().unwrap())
-        .collect();
+    let names: Vec<&str> = frames.iter().map(|f| f["hybrid"].as_str().unwrap()).collect();
     assert_eq!(names, ["even", "mostly-b"]);
     assert!(folder.join("out/meshes/even.stl").is_file() && folder.join("out/even.png").is_file());
     // the cylinder: pi 10² 20 = 6283 mm3
     let volume = frames[1]["health"]["volume_mm3"].as_f64().unwrap();
     assert!((volume / 6283.2 - 1.0).abs() < 0.03, "{volume}\n{ran}");
-    folder
-        .run(&["run", "g.toml", "-o", "out"])
-        .fails(2, &["--force"]);
-    folder
-        .run(&["run", "g.toml", "-o", "two", "--only", "evn"])
-        .fails(2, &["`even`"]);
-    folder
-        .run(&["run", "g.toml", "-o", "two", "--only", "even"])
-        .ends(0);
+    folder.run(&["run", "g.toml", "-o", "out"]).fails(2, &["--force"]);
+    folder.run(&["run", "g.toml", "-o", "two", "--only", "evn"]).fails(2, &["`even`"]);
+    folder.run(&["run", "g.toml", "-o", "two", "--only", "even"]).ends(0);
     assert!(!folder.join("two/meshes/mostly-b.stl").exists());
 }
 
@@ -226,18 +186,11 @@ fn an_empty_result_fails_and_the_others_are_made() {
         "--voxel",
         "1",
     ];
-    folder
-        .run(&args)
-        .fails(1, &["1 of 3 frames failed", "empty"]);
+    folder.run(&args).fails(1, &["1 of 3 frames failed", "empty"]);
     let expected = ["h-0.stl", "h-1.stl", "h.run.json", "low.obj", "tall.obj"];
     assert_eq!(folder.names(), expected);
     let report = json(&folder, "h.run.json");
-    assert!(
-        report["frames"][1]["error"]
-            .as_str()
-            .unwrap()
-            .contains("empty")
-    );
+    assert!(report["frames"][1]["error"].as_str().unwrap().contains("empty"));
 }
 
 #[cfg(unix)]
@@ -259,20 +212,13 @@ fn an_interrupted_run_leaves_no_half_file() {
         "--resolution",
         "128",
     ];
-    let mut child = folder
-        .command(&args)
-        .stderr(Stdio::null())
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child =
+        folder.command(&args).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
     // once a first frame is there, the handler certainly is
     while !folder.join("h-0.stl").exists() && child.try_wait().unwrap().is_none() {
         std::thread::sleep(Duration::from_millis(5));
     }
-    let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status()
-        .unwrap();
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
     assert_eq!(child.wait().unwrap().code(), Some(130));
     for name in folder.names() {

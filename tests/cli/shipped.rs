@@ -6,19 +6,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 fn texts(folder: &str) -> Vec<(PathBuf, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("data")
-        .join(folder);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(folder);
     let Ok(entries) = fs::read_dir(&root) else {
         return Vec::new();
     };
     let toml = |p: &PathBuf| p.extension().is_some_and(|e| e == "toml");
     let mut files: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).filter(toml).collect();
     files.sort();
-    files
-        .into_iter()
-        .map(|p| (p.clone(), fs::read_to_string(p).unwrap()))
-        .collect()
+    files.into_iter().map(|p| (p.clone(), fs::read_to_string(p).unwrap())).collect()
 }
 
 #[test]
@@ -27,11 +22,7 @@ fn recipes_are_read_and_begin_with_a_comment() {
         if let Err(e) = Recipe::parse(&text, &path) {
             panic!("{e}");
         }
-        assert!(
-            text.starts_with('#'),
-            "{} says nothing about itself",
-            path.display()
-        );
+        assert!(text.starts_with('#'), "{} says nothing about itself", path.display());
     }
 }
 
@@ -86,11 +77,7 @@ fn walk(
     }
     if let Some(members) = value.as_object() {
         for (key, member) in members {
-            let at = if at.is_empty() {
-                key.clone()
-            } else {
-                format!("{at}.{key}")
-            };
+            let at = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
             if let Some(known) = schema["properties"].get(key) {
                 walk(member, known, root, &at, wrong);
             } else if schema["additionalProperties"].is_object() {
@@ -119,14 +106,7 @@ fn recipes_can_be_made() {
             println!("{}: skipped, its meshes are not fetched", path.display());
             continue;
         }
-        let args = [
-            "run",
-            path.to_str().unwrap(),
-            "--dry-run",
-            "--profile",
-            "preview",
-            "--json",
-        ];
+        let args = ["run", path.to_str().unwrap(), "--dry-run", "--profile", "preview", "--json"];
         let ran = folder.run(&args).ends(0);
         let p: serde_json::Value = serde_json::from_str(&ran.stdout()).unwrap();
         assert!(p["triangles"].as_u64().unwrap() > 0, "{ran}");

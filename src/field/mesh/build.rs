@@ -76,19 +76,10 @@ impl<'a> Work<'a> {
         let mut soup = Soup::new(mesh)?;
         let diagonal = Aabb::of(soup.points.iter().copied()).size().length();
         let slack = SLACK * diagonal;
-        let floor = options
-            .floor
-            .unwrap_or(FLOOR * diagonal)
-            .max(FLOOR_SLACKS * slack);
-        let scale = Scale {
-            slack,
-            offset: OFFSET * diagonal,
-            floor,
-        };
-        let Shells {
-            shells,
-            flipped_faces,
-        } = Shells::new(&soup.points, &mut soup.faces, RIM * diagonal);
+        let floor = options.floor.unwrap_or(FLOOR * diagonal).max(FLOOR_SLACKS * slack);
+        let scale = Scale { slack, offset: OFFSET * diagonal, floor };
+        let Shells { shells, flipped_faces } =
+            Shells::new(&soup.points, &mut soup.faces, RIM * diagonal);
         let flipped_shells = orient::right(&soup.points, &mut soup.faces, &shells);
         let report = MeshReport {
             faces: mesh.faces.len(),
@@ -100,13 +91,7 @@ impl<'a> Work<'a> {
             flipped_faces,
             ..Default::default()
         };
-        let mut work = Self {
-            soup,
-            shells,
-            scale,
-            options,
-            report,
-        };
+        let mut work = Self { soup, shells, scale, options, report };
         work.measure(mesh.faces.len())?;
         Ok(work)
     }
@@ -116,23 +101,21 @@ impl<'a> Work<'a> {
         let all: f64 = self.soup.faces.iter().map(|f| self.area(f)).sum();
         let double: f64 = self.soup.double.iter().map(|f| self.area(f)).sum();
         let open = self.shells.iter().filter(|s| !s.rim.is_empty());
-        let open: f64 = open
-            .flat_map(|s| &s.faces)
-            .map(|&f| self.area(&self.soup.faces[f as usize]))
-            .sum();
+        let open: f64 =
+            open.flat_map(|s| &s.faces).map(|&f| self.area(&self.soup.faces[f as usize])).sum();
         let rims = self.shells.iter().flat_map(|s| &s.rim);
-        let length: f64 = rims
-            .map(|&([a, b], n)| self.at(a).distance(self.at(b)) * f64::from(n))
-            .sum();
+        let length: f64 =
+            rims.map(|&([a, b], n)| self.at(a).distance(self.at(b)) * f64::from(n)).sum();
         let area = all + double;
         if area <= 0.0 {
             return Err(MeshFieldError::Empty { faces });
         }
         let report = &mut self.report;
         report.area = area;
-        report.open_area_share = open / area;
-        report.double_area_share = double / area;
-        report.rim_length = length;
+        // an empty sum is -0
+        report.open_area_share = open / area + 0.0;
+        report.double_area_share = double / area + 0.0;
+        report.rim_length = length + 0.0;
         Ok(())
     }
 
@@ -159,10 +142,7 @@ impl<'a> Work<'a> {
     fn sheet(&mut self, faces: &[[DVec3; 3]]) -> Option<Sheet> {
         let half = self.options.thicken?.mm * 0.5;
         self.report.thickened_faces = faces.len();
-        (!faces.is_empty()).then(|| Sheet {
-            faces: Bvh::new(faces),
-            half,
-        })
+        (!faces.is_empty()).then(|| Sheet { faces: Bvh::new(faces), half })
     }
 
     /// The solid and the sheets.
@@ -170,16 +150,9 @@ impl<'a> Work<'a> {
         let (closed, open): (Vec<&Shell>, Vec<&Shell>) =
             self.shells.iter().partition(|s| s.rim.is_empty());
         // a thickened sheet has its thickness; what it seems to enclose is arbitrary
-        let open = if self.options.thicken.is_some() {
-            self.holed(&open)
-        } else {
-            open
-        };
-        let used: Vec<u32> = closed
-            .iter()
-            .chain(&open)
-            .flat_map(|s| s.faces.iter().copied())
-            .collect();
+        let open = if self.options.thicken.is_some() { self.holed(&open) } else { open };
+        let used: Vec<u32> =
+            closed.iter().chain(&open).flat_map(|s| s.faces.iter().copied()).collect();
         let inside = self.inside(&closed, &open);
         let faces: Vec<_> = used.iter().map(|&f| self.soup.faces[f as usize]).collect();
         let surface = Surface::new(&self.soup.points, &faces, &inside, self.scale, job)?;
@@ -189,11 +162,7 @@ impl<'a> Work<'a> {
         }
         let sheet = self.sheet(&sheets);
         self.tell(&surface, sheet.is_some());
-        let blur = if surface.contact_faces > 0 {
-            4.0 * self.scale.slack
-        } else {
-            0.0
-        };
+        let blur = if surface.contact_faces > 0 { 4.0 * self.scale.slack } else { 0.0 };
         let solid = (!surface.triangles.is_empty()).then(|| Solid::new(surface, inside, blur));
         Ok((solid, sheet))
     }
@@ -212,8 +181,7 @@ impl<'a> Work<'a> {
     fn inside(&self, closed: &[&Shell], open: &[&Shell]) -> Inside {
         let faces = |shells: &[&Shell]| -> Vec<[DVec3; 3]> {
             let all = shells.iter().flat_map(|s| &s.faces);
-            all.map(|&f| self.corners(&self.soup.faces[f as usize]))
-                .collect()
+            all.map(|&f| self.corners(&self.soup.faces[f as usize])).collect()
         };
         // rims of different shells may cancel
         let mut net: BTreeMap<[u32; 2], i64> = BTreeMap::new();
@@ -240,17 +208,11 @@ impl<'a> Work<'a> {
                 let [a, b, c] = self.corners(face);
                 let off = (b - a).cross(c - a).normalize_or_zero() * self.scale.offset;
                 let middle = (a + b + c) / 3.0;
-                let (behind, front) = (
-                    inside.open_number(middle - off),
-                    inside.open_number(middle + off),
-                );
+                let (behind, front) =
+                    (inside.open_number(middle - off), inside.open_number(middle + off));
                 let size = self.area(face);
                 all += size;
-                yes += if behind >= SOLID && front <= 1.0 - SOLID {
-                    size
-                } else {
-                    0.0
-                };
+                yes += if behind >= SOLID && front <= 1.0 - SOLID { size } else { 0.0 };
             }
             yes >= 0.5 * all
         };
@@ -264,9 +226,7 @@ impl<'a> Work<'a> {
         };
         let chosen = |s: &&Shell| which == Which::All || !s.rim.is_empty();
         let shells = self.shells.iter().filter(chosen).flat_map(|s| &s.faces);
-        let mut out: Vec<_> = shells
-            .map(|&f| self.corners(&self.soup.faces[f as usize]))
-            .collect();
+        let mut out: Vec<_> = shells.map(|&f| self.corners(&self.soup.faces[f as usize])).collect();
         let buried = |t: &[DVec3; 3]| {
             let [a, b, c] = *t;
             let off = (b - a).cross(c - a).normalize_or_zero() * self.scale.offset;

@@ -12,6 +12,10 @@ use rayon::prelude::*;
 
 /// Faces worked on between two looks at the job and the limits.
 const CHUNK: usize = 2048;
+/// Work spent on cutting in all, and for each face; some seconds at most. Faces beyond are left
+/// whole, by their middles.
+const LIMIT: usize = 10_000_000;
+const LIMIT_EACH: usize = 500;
 /// Faces looked at to tell that a patch is of one class.
 const PROBES: usize = 8;
 /// Faces lower than this many slacks are no sheets but leftovers at seams.
@@ -64,9 +68,7 @@ fn area(t: &[DVec3]) -> f64 {
 
 /// Least height of a triangle.
 fn height(t: &[DVec3; 3]) -> f64 {
-    let longest = (0..3)
-        .map(|i| t[i].distance(t[(i + 1) % 3]))
-        .fold(0.0, f64::max);
+    let longest = (0..3).map(|i| t[i].distance(t[(i + 1) % 3])).fold(0.0, f64::max);
     2.0 * area(t) / longest
 }
 
@@ -88,11 +90,7 @@ fn folded(
     let across = |x: DVec3| (x - a) - along * (x - a).dot(along);
     let (p, q) = (across(p), across(q));
     // the lower one against the plane of the higher one
-    let (low, high) = if p.length() < q.length() {
-        (p, q)
-    } else {
-        (q, p)
-    };
+    let (low, high) = if p.length() < q.length() { (p, q) } else { (q, p) };
     low.dot(high) > 0.0 && low.reject_from(high).length() < slack
 }
 
@@ -109,19 +107,10 @@ impl Surface {
         scale: Scale,
         job: &dyn Job,
     ) -> Result<Self, Cancelled> {
-        let triangles: Vec<_> = faces
-            .iter()
-            .map(|f| f.map(|v| points[v as usize]))
-            .collect();
+        let triangles: Vec<_> = faces.iter().map(|f| f.map(|v| points[v as usize])).collect();
         let normal = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]).normalize_or_zero();
         let normals = triangles.iter().map(normal).collect();
-        let all = Faces {
-            faces,
-            triangles,
-            normals,
-            inside,
-            scale,
-        };
+        let all = Faces { faces, triangles, normals, inside, scale };
         let contacts = all.contacts(job)?;
         let mut surface = Self::default();
         for (group, class, trust) in all.untouched(&contacts, job)? {
@@ -145,11 +134,7 @@ impl Surface {
             Class::Surface | Class::Reversed => {}
         }
         for i in 1..corners.len().saturating_sub(1) {
-            let [b, c] = if class == Class::Reversed {
-                [i + 1, i]
-            } else {
-                [i, i + 1]
-            };
+            let [b, c] = if class == Class::Reversed { [i + 1, i] } else { [i, i + 1] };
             let triangle = [corners[0], corners[b], corners[c]];
             match (class, trust) {
                 (Class::Surface | Class::Reversed, _) => {
@@ -221,10 +206,8 @@ impl Faces<'_> {
                 // joined at a corner: one's opposite side must reach the other
                 [k] => {
                     let l = (0..3).find(|&l| g[l] == f[k]).unwrap_or(0);
-                    let (s, r) = (
-                        [t[(k + 1) % 3], t[(k + 2) % 3]],
-                        [u[(l + 1) % 3], u[(l + 2) % 3]],
-                    );
+                    let (s, r) =
+                        ([t[(k + 1) % 3], t[(k + 2) % 3]], [u[(l + 1) % 3], u[(l + 2) % 3]]);
                     !apart(&s, u, slack) || !apart(&r, t, slack)
                 }
                 [k, l] => folded(t, 3 - k - l, u, g, f, slack),
@@ -265,17 +248,11 @@ impl Faces<'_> {
         }
         let mut roots: Vec<(u32, u32)> = all.into_iter().map(|f| (sets.find(f), f)).collect();
         roots.sort_unstable();
-        let patches: Vec<Vec<u32>> = roots
-            .chunk_by(|a, b| a.0 == b.0)
-            .map(|c| c.iter().map(|r| r.1).collect())
-            .collect();
+        let patches: Vec<Vec<u32>> =
+            roots.chunk_by(|a, b| a.0 == b.0).map(|c| c.iter().map(|r| r.1).collect()).collect();
         let patch = |patch: Vec<u32>| match self.patch(&patch) {
             Some(class) => vec![(patch, class, Trust::Within(0.0))],
-            None => patch
-                .into_iter()
-                .map(alone)
-                .map(|(f, c, _)| (f, c, Trust::Never))
-                .collect(),
+            None => patch.into_iter().map(alone).map(|(f, c, _)| (f, c, Trust::Never)).collect(),
         };
         Ok(patches.into_par_iter().flat_map_iter(patch).collect())
     }
@@ -284,19 +261,11 @@ impl Faces<'_> {
     fn patch(&self, patch: &[u32]) -> Option<Class> {
         let size = |&&f: &&u32| area(&self.triangles[f as usize]);
         let largest = patch.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
-        let class = |f: u32| {
-            self.class(
-                middle(&self.triangles[f as usize]),
-                self.normals[f as usize],
-            )
-        };
+        let class =
+            |f: u32| self.class(middle(&self.triangles[f as usize]), self.normals[f as usize]);
         let first = class(*largest);
         let step = patch.len().div_ceil(PROBES);
-        patch
-            .iter()
-            .step_by(step)
-            .all(|&f| class(f) == first)
-            .then_some(first)
+        patch.iter().step_by(step).all(|&f| class(f) == first).then_some(first)
     }
 
     /// The class of one face, surface if part of it seems to be, and its trust.
@@ -306,19 +275,13 @@ impl Faces<'_> {
         let class = self.class(centre, n);
         let radius = t.iter().fold(0.0, |r: f64, p| r.max(p.distance(centre)));
         let off = n * self.scale.offset;
-        if self
-            .inside
-            .sharp(centre + off, radius + 2.0 * self.scale.offset)
-        {
+        if self.inside.sharp(centre + off, radius + 2.0 * self.scale.offset) {
             return (class, Trust::Within(0.0));
         }
         let toward = |p: DVec3| self.class(centre + (p - centre) * 0.75, n);
         let is_surface = |c: Class| matches!(c, Class::Surface | Class::Reversed);
         let seen = [class, toward(t[0]), toward(t[1]), toward(t[2])];
-        (
-            seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class),
-            Trust::Local,
-        )
+        (seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class), Trust::Local)
     }
 
     /// Cuts the faces in contact and adds what is surface.
@@ -328,29 +291,28 @@ impl Faces<'_> {
         out: &mut Surface,
         job: &dyn Job,
     ) -> Result<(), Cancelled> {
-        let all: Vec<u32> = (0..contacts.len() as u32)
-            .filter(|&f| !contacts[f as usize].is_empty())
-            .collect();
+        let all: Vec<u32> =
+            (0..contacts.len() as u32).filter(|&f| !contacts[f as usize].is_empty()).collect();
         out.contact_faces = all.len();
-        let limit = 4 * self.faces.len() + 200_000;
+        let limit = LIMIT + LIMIT_EACH * self.faces.len();
+        let mut spent = 0;
         let classify = |p: DVec3, n: DVec3| self.class(p, n);
-        for chunk in all.chunks(CHUNK) {
+        for chunk in all.chunks(CHUNK / 8) {
             check(job)?;
-            let full = out.triangles.len() > limit;
+            let full = spent > limit;
             let pieces: Vec<_> = chunk
                 .par_iter()
                 .map(|&f| {
-                    let contacts = if full {
-                        &[][..]
-                    } else {
-                        &contacts[f as usize][..]
-                    };
+                    let contacts = if full { &[][..] } else { &contacts[f as usize][..] };
                     let n = self.normals[f as usize];
-                    Cutter::new(&self.triangles, &self.normals, self.scale, &classify, n)
-                        .pieces(f as usize, contacts)
+                    let mut cutter =
+                        Cutter::new(&self.triangles, &self.normals, self.scale, &classify, n);
+                    let pieces = cutter.pieces(f as usize, contacts);
+                    (pieces, cutter.spent)
                 })
                 .collect();
-            for (&f, face) in chunk.iter().zip(pieces) {
+            for (&f, (face, work)) in chunk.iter().zip(pieces) {
+                spent += work;
                 out.buried_faces += usize::from(face.iter().any(|p| p.class == Class::Buried));
                 let t = &self.triangles[f as usize];
                 let empty = face.iter().filter(|p| p.class == Class::Nothing);
@@ -371,9 +333,7 @@ impl Faces<'_> {
     /// Near the line where faces meet, a piece's side does not tell.
     fn trust(&self, corners: &[DVec3], doubtful: bool) -> Trust {
         let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let radius = corners
-            .iter()
-            .fold(0.0, |r: f64, p| r.max(p.distance(centre)));
+        let radius = corners.iter().fold(0.0, |r: f64, p| r.max(p.distance(centre)));
         if doubtful || !self.inside.sharp(centre, radius) {
             return Trust::Never;
         }

@@ -27,9 +27,11 @@ pub(super) struct Scale {
     pub floor: f64,
 }
 
-/// A face is cut to at most this many pieces, and this many more for each face that touches it.
-const PIECES: usize = 64;
-const PIECES_EACH: usize = 16;
+/// Work spent on one face at most, and more for each face that touches it, in faces looked at;
+/// asking what lies beside a piece counts as `ASK`. A leg through a seat needs some hundreds.
+const WORK: usize = 4096;
+const WORK_EACH: usize = 256;
+const ASK: usize = 16;
 /// Cuts along one branch; halving alone brings any face below any sensible floor by then.
 const DEPTH: u32 = 64;
 /// With more faces than this across a piece it is halved first, so that each half meets fewer.
@@ -52,10 +54,7 @@ struct Plane {
 
 impl Plane {
     fn through(p: DVec3, normal: DVec3) -> Self {
-        Self {
-            normal,
-            offset: normal.dot(p),
-        }
+        Self { normal, offset: normal.dot(p) }
     }
 
     fn height(&self, p: DVec3) -> f64 {
@@ -64,9 +63,7 @@ impl Plane {
 
     fn range(&self, corners: &[DVec3]) -> (f64, f64) {
         let heights = corners.iter().map(|&p| self.height(p));
-        heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), h| {
-            (lo.min(h), hi.max(h))
-        })
+        heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), h| (lo.min(h), hi.max(h)))
     }
 
     /// The parts of a convex polygon in front of and behind the plane.
@@ -101,6 +98,8 @@ pub(super) struct Cutter<'a> {
     /// The face's own normal.
     pub normal: DVec3,
     budget: usize,
+    /// Work spent so far.
+    pub spent: usize,
 }
 
 impl<'a> Cutter<'a> {
@@ -111,31 +110,22 @@ impl<'a> Cutter<'a> {
         classify: &'a dyn Fn(DVec3, DVec3) -> Class,
         normal: DVec3,
     ) -> Self {
-        Self {
-            triangles,
-            normals,
-            scale,
-            classify,
-            normal,
-            budget: 0,
-        }
+        Self { triangles, normals, scale, classify, normal, budget: 0, spent: 0 }
     }
 
     /// The pieces of face `index`, given the faces that touch it; one piece if it is all alike.
     pub(super) fn pieces(&mut self, index: usize, contacts: &[u32]) -> Vec<Piece> {
-        self.budget = PIECES + PIECES_EACH * contacts.len();
+        self.budget = WORK + WORK_EACH * contacts.len();
         self.cut(self.triangles[index].to_vec(), contacts, DEPTH)
     }
 
     fn cut(&mut self, corners: Vec<DVec3>, contacts: &[u32], depth: u32) -> Vec<Piece> {
+        self.spent += contacts.len();
         let touches = |&&b: &&u32| !apart(&corners, &self.triangles[b as usize], self.scale.slack);
         let near: Vec<u32> = contacts.iter().filter(touches).copied().collect();
-        let planes: Vec<Plane> = near
-            .iter()
-            .filter_map(|&b| self.plane(&corners, b))
-            .collect();
+        let planes: Vec<Plane> = near.iter().filter_map(|&b| self.plane(&corners, b)).collect();
         let (size, halving) = halving(&corners);
-        let done = depth == 0 || self.budget == 0 || size < self.scale.floor;
+        let done = depth == 0 || self.spent > self.budget || size < self.scale.floor;
         let plane = match planes.first() {
             Some(_) if planes.len() > CROWD => halving,
             Some(&plane) => plane,
@@ -152,11 +142,7 @@ impl<'a> Cutter<'a> {
         let mut rest = self.cut(back, &near, depth - 1);
         match (&pieces[..], &rest[..]) {
             ([a], [b]) if a.class == b.class => {
-                vec![Piece {
-                    corners,
-                    class: a.class,
-                    doubtful: a.doubtful || b.doubtful,
-                }]
+                vec![Piece { corners, class: a.class, doubtful: a.doubtful || b.doubtful }]
             }
             _ => {
                 pieces.append(&mut rest);
@@ -166,14 +152,10 @@ impl<'a> Cutter<'a> {
     }
 
     fn leaf(&mut self, corners: Vec<DVec3>, doubtful: bool) -> Piece {
-        self.budget = self.budget.saturating_sub(1);
+        self.spent += ASK;
         let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
         let class = (self.classify)(middle, self.normal);
-        Piece {
-            corners,
-            class,
-            doubtful,
-        }
+        Piece { corners, class, doubtful }
     }
 
     /// A plane along which touching face `b` may part inside from outside on the piece, if it
@@ -194,20 +176,12 @@ impl<'a> Cutter<'a> {
             // inwards of a side is in front of it, or behind where the two normals are opposed
             let facing = self.normal.dot(n);
             let out = |&(lo, hi): &(f64, f64)| {
-                if facing > 0.0 {
-                    hi < least
-                } else {
-                    lo > -least
-                }
+                if facing > 0.0 { hi < least } else { lo > -least }
             };
             if ranges.iter().any(out) {
                 return None;
             }
-            return sides
-                .into_iter()
-                .zip(ranges)
-                .find(|&(_, r)| across(r))
-                .map(|(side, _)| side);
+            return sides.into_iter().zip(ranges).find(|&(_, r)| across(r)).map(|(side, _)| side);
         }
         across(range).then_some(own)
     }
@@ -225,8 +199,5 @@ fn halving(corners: &[DVec3]) -> (f64, Plane) {
         }
     }
     let (d2, p, q) = best;
-    (
-        d2.sqrt(),
-        Plane::through((p + q) * 0.5, (p - q).normalize_or_zero()),
-    )
+    (d2.sqrt(), Plane::through((p + q) * 0.5, (p - q).normalize_or_zero()))
 }

@@ -28,12 +28,7 @@ impl Inside {
     ) -> Self {
         let (closed, open) = (Winding::new(closed), Winding::new(open));
         let bounds = closed.bounds().hull(open.bounds());
-        Self {
-            closed,
-            open,
-            rim: Rim::new(rim),
-            bounds,
-        }
+        Self { closed, open, rim: Rim::new(rim), bounds }
     }
 
     /// The box round all faces; everything outside it is outside.
@@ -62,16 +57,12 @@ impl Inside {
     }
 
     fn closed_number(&self, p: DVec3) -> f64 {
-        if self.closed.bounds().contains(p) {
-            self.closed.number(p, 0.5).round()
-        } else {
-            0.0
-        }
+        if self.closed.bounds().contains(p) { self.closed.number(p, 0.5).round() } else { 0.0 }
     }
 
-    /// The winding number of the open shells.
+    /// The winding number of the open shells, roughly.
     pub(super) fn open_number(&self, p: DVec3) -> f64 {
-        self.open.number(p, 0.5)
+        self.open.rough(p)
     }
 
     /// Whether in that ball only faces part inside from outside (before the cut at the box): the
@@ -85,7 +76,7 @@ impl Inside {
         if change >= most {
             return false;
         }
-        let part = (self.open.rough(centre) - 0.5).rem_euclid(1.0);
+        let part = (self.open_number(centre) - 0.5).rem_euclid(1.0);
         change + TREE_ERROR < part.min(1.0 - part)
     }
 }

@@ -157,10 +157,7 @@ impl MeshField {
 impl Field for MeshField {
     fn value(&self, p: DVec3) -> f64 {
         let solid = self.solid.as_ref().map_or(f64::INFINITY, |s| s.value(p));
-        let sheet = self
-            .sheet
-            .as_ref()
-            .map_or(f64::INFINITY, |s| s.faces.distance(p) - s.half);
+        let sheet = self.sheet.as_ref().map_or(f64::INFINITY, |s| s.faces.distance(p) - s.half);
         solid.min(sheet)
     }
 
@@ -195,10 +192,7 @@ impl Field for MeshField {
 
     fn support(&self) -> Aabb {
         let solid = self.solid.as_ref().map_or(Aabb::EMPTY, Solid::bounds);
-        let sheet = self
-            .sheet
-            .as_ref()
-            .map_or(Aabb::EMPTY, |s| s.faces.bounds().grow(s.half));
+        let sheet = self.sheet.as_ref().map_or(Aabb::EMPTY, |s| s.faces.bounds().grow(s.half));
         solid.hull(sheet)
     }
 }

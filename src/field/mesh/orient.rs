@@ -44,11 +44,7 @@ fn measure(points: &[DVec3], faces: &[[u32; 3]], shell: &Shell) -> Measured {
     let volume = if flat { 0.0 } else { volume };
     let step = (shell.faces.len() * 3).div_ceil(PROBES).max(1);
     let probes = corners().step_by(step).map(at).collect();
-    Measured {
-        volume,
-        bounds,
-        probes,
-    }
+    Measured { volume, bounds, probes }
 }
 
 /// Triangles that close the rims: each connected rim has a fan round its middle.
@@ -59,8 +55,7 @@ fn lids(points: &[DVec3], rim: &[([u32; 2], u32)]) -> Vec<[DVec3; 3]> {
     ends.dedup();
     let place = |v: u32| ends.partition_point(|&e| e < v) as u32;
     let mut sets = Sets::new(ends.len());
-    rim.iter()
-        .for_each(|&([a, b], _)| sets.join(place(a), place(b)));
+    rim.iter().for_each(|&([a, b], _)| sets.join(place(a), place(b)));
     let mut middles: BTreeMap<u32, (DVec3, f64)> = BTreeMap::new();
     for &([a, b], _) in rim {
         let length = at(a).distance(at(b));
@@ -88,18 +83,14 @@ pub(super) fn right(points: &[DVec3], faces: &mut [[u32; 3]], shells: &[Shell]) 
     let all: Vec<_> = shells.iter().map(|s| measure(points, faces, s)).collect();
     let mut order: Vec<usize> = (0..shells.len()).collect();
     // containers come before what they contain
-    order.sort_by(|&i, &j| {
-        all[j]
-            .volume
-            .abs()
-            .total_cmp(&all[i].volume.abs())
-            .then(i.cmp(&j))
-    });
+    order.sort_by(|&i, &j| all[j].volume.abs().total_cmp(&all[i].volume.abs()).then(i.cmp(&j)));
     let mut winding: Vec<Option<Winding>> = vec![None; shells.len()];
     let mut turn = vec![false; shells.len()];
+    // what has no volume contains nothing
+    let solid = order.iter().filter(|&&i| all[i].volume != 0.0).count();
     for (rank, &i) in order.iter().enumerate() {
         // the last that contains it is the smallest
-        let container = order[..rank].iter().rev().copied().find(|&j| {
+        let container = order[..rank.min(solid)].iter().rev().copied().find(|&j| {
             if !holds(&all[j].bounds, &all[i].bounds) {
                 return false;
             }
@@ -116,10 +107,7 @@ pub(super) fn right(points: &[DVec3], faces: &mut [[u32; 3]], shells: &[Shell]) 
         };
     }
     for (shell, _) in shells.iter().zip(&turn).filter(|(_, t)| **t) {
-        shell
-            .faces
-            .iter()
-            .for_each(|&f| faces[f as usize].swap(1, 2));
+        shell.faces.iter().for_each(|&f| faces[f as usize].swap(1, 2));
     }
     turn.iter().filter(|&&t| t).count()
 }

@@ -66,23 +66,14 @@ impl MeshReport {
                 self.rim_length
             ),
         );
-        say(
-            self.thickened_faces > 0,
-            format!("{} faces are thickened", self.thickened_faces),
-        );
+        say(self.thickened_faces > 0, format!("{} faces are thickened", self.thickened_faces));
         say(
             self.flipped_shells > 0,
-            format!(
-                "{} of {} shells were inside out: turned",
-                self.flipped_shells, self.shells
-            ),
+            format!("{} of {} shells were inside out: turned", self.flipped_shells, self.shells),
         );
         say(
             self.flipped_faces > 0,
-            format!(
-                "{} faces disagreed with their neighbours: turned",
-                self.flipped_faces
-            ),
+            format!("{} faces disagreed with their neighbours: turned", self.flipped_faces),
         );
         say(
             self.buried_area_share > 0.0,

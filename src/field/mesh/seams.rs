@@ -12,11 +12,7 @@ pub(super) fn chains(points: &[DVec3], rims: &[(u32, u32)], tolerance: f64) -> V
     let same = clusters(points, rims, tolerance);
     let ends = |&(a, b): &(u32, u32)| (same[&a], same[&b]);
     let at = |v: u32| points[v as usize];
-    let flat: Vec<_> = rims
-        .iter()
-        .map(ends)
-        .map(|(a, b)| [at(a), at(b), at(b)])
-        .collect();
+    let flat: Vec<_> = rims.iter().map(ends).map(|(a, b)| [at(a), at(b), at(b)]).collect();
     let bvh = Bvh::new(&flat);
     let mut inner: Vec<Vec<(f64, u32)>> = vec![vec![]; rims.len()];
     let mut heads: Vec<u32> = same.values().copied().collect();
@@ -37,10 +33,7 @@ pub(super) fn chains(points: &[DVec3], rims: &[(u32, u32)], tolerance: f64) -> V
     let chain = |(edge, mut inner): (&(u32, u32), Vec<(f64, u32)>)| {
         inner.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         let (a, b) = ends(edge);
-        std::iter::once(a)
-            .chain(inner.into_iter().map(|(_, v)| v))
-            .chain([b])
-            .collect()
+        std::iter::once(a).chain(inner.into_iter().map(|(_, v)| v)).chain([b]).collect()
     };
     rims.iter().zip(inner).map(chain).collect()
 }

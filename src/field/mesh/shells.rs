@@ -57,24 +57,12 @@ impl Shells {
                 body.into_iter().map(|s| vec![s]).collect()
             };
             for part in parts {
-                let faces = part
-                    .iter()
-                    .flat_map(|&s| groups[s as usize].iter().copied());
-                let rim = if whole.is_empty() {
-                    vec![]
-                } else {
-                    rim(&nets[part[0] as usize])
-                };
-                shells.push(Shell {
-                    faces: faces.collect(),
-                    rim,
-                });
+                let faces = part.iter().flat_map(|&s| groups[s as usize].iter().copied());
+                let rim = if whole.is_empty() { vec![] } else { rim(&nets[part[0] as usize]) };
+                shells.push(Shell { faces: faces.collect(), rim });
             }
         }
-        Self {
-            shells,
-            flipped_faces,
-        }
+        Self { shells, flipped_faces }
     }
 }
 
@@ -121,10 +109,7 @@ fn orient(points: &[DVec3], faces: &mut [[u32; 3]]) -> (Vec<Vec<u32>>, usize) {
         let mut group = vec![start as u32];
         let mut done = 0;
         while done < group.len() {
-            let (f, me) = (
-                group[done] as usize,
-                turned[group[done] as usize] == Some(true),
-            );
+            let (f, me) = (group[done] as usize, turned[group[done] as usize] == Some(true));
             done += 1;
             for &(g, clash) in &next[f] {
                 if turned[g as usize].is_none() {
@@ -138,10 +123,7 @@ fn orient(points: &[DVec3], faces: &mut [[u32; 3]]) -> (Vec<Vec<u32>>, usize) {
             own.map(|&f| area(points, &faces[f as usize])).sum()
         };
         let minority = side(true) <= side(false);
-        for &f in group
-            .iter()
-            .filter(|&&f| turned[f as usize] == Some(minority))
-        {
+        for &f in group.iter().filter(|&&f| turned[f as usize] == Some(minority)) {
             faces[f as usize].swap(1, 2);
             count += 1;
         }
@@ -231,10 +213,7 @@ fn unite(points: &[DVec3], nets: &mut [Net]) -> (Vec<Vec<u32>>, Vec<bool>) {
         let mut body = vec![start as u32];
         let mut done = 0;
         while done < body.len() {
-            let (s, me) = (
-                body[done] as usize,
-                turned[body[done] as usize] == Some(true),
-            );
+            let (s, me) = (body[done] as usize, turned[body[done] as usize] == Some(true));
             done += 1;
             for &(o, clash) in &next[s] {
                 if turned[o as usize].is_none() {

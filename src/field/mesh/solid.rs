@@ -43,23 +43,9 @@ fn signed(distance: f64, inside: bool) -> f64 {
 impl Solid {
     pub(super) fn new(surface: Surface, inside: Inside, blur: f64) -> Self {
         let touch = 1e-12 * inside.bounds().size().length();
-        let Surface {
-            triangles,
-            trust,
-            ghosts,
-            culled,
-            ..
-        } = surface;
+        let Surface { triangles, trust, ghosts, culled, .. } = surface;
         let [surface, ghosts, culled] = [triangles, ghosts, culled].map(|t| Bvh::new(&t));
-        Self {
-            surface,
-            trust,
-            ghosts,
-            culled,
-            inside,
-            touch,
-            blur,
-        }
+        Self { surface, trust, ghosts, culled, inside, touch, blur }
     }
 
     /// The box outside which nothing is inside.
@@ -86,10 +72,7 @@ impl Solid {
     }
 
     fn trust(&self, near: &Nearest) -> Trust {
-        self.trust
-            .get(near.face as usize)
-            .copied()
-            .unwrap_or(Trust::Never)
+        self.trust.get(near.face as usize).copied().unwrap_or(Trust::Never)
     }
 
     pub(super) fn value(&self, p: DVec3) -> f64 {
@@ -105,11 +88,7 @@ impl Solid {
         if near.distance <= self.touch {
             return false;
         }
-        let face = if self.inside.is_closed() {
-            self.by_face(near)
-        } else {
-            None
-        };
+        let face = if self.inside.is_closed() { self.by_face(near) } else { None };
         face.unwrap_or_else(|| self.inside.raw(p))
     }
 
@@ -118,11 +97,7 @@ impl Solid {
         // with closed shells the way from one run to the next holds no surprise either
         let reach = self.inside.is_closed() && self.ghosts.is_empty();
         let mut known = Vec::with_capacity(RUN + 1);
-        for ((at, hits), out) in at
-            .chunks(RUN)
-            .zip(hits.chunks(RUN))
-            .zip(out.chunks_mut(RUN))
-        {
+        for ((at, hits), out) in at.chunks(RUN).zip(hits.chunks(RUN)).zip(out.chunks_mut(RUN)) {
             let last = known.pop().filter(|_| reach);
             known.clear();
             known.extend(last);
@@ -137,10 +112,8 @@ impl Solid {
         if self.sharp(run.centre(), 2.0 * radius) {
             self.spread(at, hits, radius, known, out);
         } else if at.len() > OCTET {
-            for ((at, hits), out) in at
-                .chunks(OCTET)
-                .zip(hits.chunks(OCTET))
-                .zip(out.chunks_mut(OCTET))
+            for ((at, hits), out) in
+                at.chunks(OCTET).zip(hits.chunks(OCTET)).zip(out.chunks_mut(OCTET))
             {
                 known.clear();
                 self.signs(at, hits, known, out);
@@ -179,11 +152,7 @@ impl Solid {
             match near.and_then(|near| self.by_face(&near)) {
                 Some(inside) => {
                     *f = signed(distance, inside);
-                    known.push(Known {
-                        at: p,
-                        distance,
-                        inside,
-                    });
+                    known.push(Known { at: p, distance, inside });
                 }
                 None => open.push((i, near.and_then(|near| self.side(&near)))),
             }
@@ -199,11 +168,7 @@ impl Solid {
                 .or_else(reached)
                 .unwrap_or_else(|| distance > self.touch && self.inside.raw(p));
             out[i] = signed(distance, inside);
-            known.push(Known {
-                at: p,
-                distance,
-                inside,
-            });
+            known.push(Known { at: p, distance, inside });
             sides.extend(side.map(|side| (side, inside)));
         }
     }

@@ -34,12 +34,7 @@ pub(super) fn sides(faces: &[[u32; 3]]) -> Vec<Side> {
     for (face, f) in faces.iter().enumerate() {
         for i in 0..3 {
             let (p, q) = (f[i], f[(i + 1) % 3]);
-            out.push(Side {
-                a: p.min(q),
-                b: p.max(q),
-                face: face as u32,
-                forward: p < q,
-            });
+            out.push(Side { a: p.min(q), b: p.max(q), face: face as u32, forward: p < q });
         }
     }
     out.sort_unstable();
@@ -85,9 +80,7 @@ impl Soup {
         let mut soup = Self::default();
         let welded = soup.weld(mesh)?;
         if welded.is_empty() {
-            return Err(MeshFieldError::Empty {
-                faces: mesh.faces.len(),
-            });
+            return Err(MeshFieldError::Empty { faces: mesh.faces.len() });
         }
         let double = soup.single(&welded);
         soup.close_with(double);
@@ -103,18 +96,11 @@ impl Soup {
             for (w, &v) in welded.iter_mut().zip(face) {
                 let points = mesh.points.len();
                 let Some(&p) = mesh.points.get(v as usize) else {
-                    return Err(MeshFieldError::Corner {
-                        face: index,
-                        corner: v,
-                        points,
-                    });
+                    return Err(MeshFieldError::Corner { face: index, corner: v, points });
                 };
                 // squares and products of three lengths must stay finite
                 if !p.abs().cmplt(DVec3::splat(1e60)).all() {
-                    return Err(MeshFieldError::Coordinate {
-                        face: index,
-                        corner: v,
-                    });
+                    return Err(MeshFieldError::Coordinate { face: index, corner: v });
                 }
                 // adding zero turns -0 into 0
                 let key = (p + DVec3::ZERO).to_array().map(f64::to_bits);
@@ -124,11 +110,7 @@ impl Soup {
                 });
             }
             let [a, b, c] = welded;
-            if a == b || b == c || c == a {
-                self.degenerate += 1
-            } else {
-                out.push(welded)
-            }
+            if a == b || b == c || c == a { self.degenerate += 1 } else { out.push(welded) }
         }
         Ok(out)
     }
@@ -193,11 +175,7 @@ impl Soup {
         for (i, f) in double.into_iter().enumerate() {
             let patch = patches.find(ours + i as u32);
             let wall = votes.get(&patch).is_some_and(|&v| v >= 0);
-            if wall {
-                self.faces.push(f)
-            } else {
-                self.double.push(f)
-            }
+            if wall { self.faces.push(f) } else { self.double.push(f) }
         }
     }
 }

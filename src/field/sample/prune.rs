@@ -51,12 +51,7 @@ impl<'a> Pruner<'a> {
         let b = lattice.bounds();
         let scale = b.min.abs().max(b.max.abs()).max_element() + b.size().length();
         let slack = (1e-9 * scale).max(f64::from(f32::MIN_POSITIVE));
-        Self {
-            f,
-            lattice,
-            support: f.support().grow(slack),
-            slack,
-        }
+        Self { f, lattice, support: f.support().grow(slack), slack }
     }
 
     /// The sign the whole box has, if field and bound can tell.
@@ -82,11 +77,7 @@ impl<'a> Pruner<'a> {
         let lo: [u32; 3] = std::array::from_fn(|a| lo[a].min(hi[a]));
         let side = self.side(&region(self.lattice, lo, hi))?;
         let reaches = on_border(self.lattice, lo) || on_border(self.lattice, hi);
-        if side == Side::Inside && reaches {
-            None
-        } else {
-            Some(side)
-        }
+        if side == Side::Inside && reaches { None } else { Some(side) }
     }
 
     /// Sorts all bricks by their bounds, level by level.
@@ -94,10 +85,7 @@ impl<'a> Pruner<'a> {
         let most = bricks.size.iter().copied().max().unwrap_or(0);
         let mut level = most.max(1).next_power_of_two().ilog2();
         let mut open = vec![Node { lo: [0; 3], level }];
-        let mut split = Split {
-            inside: Vec::new(),
-            active: Vec::new(),
-        };
+        let mut split = Split { inside: Vec::new(), active: Vec::new() };
         if bricks.bricks.is_empty() {
             return Ok(split);
         }
@@ -106,10 +94,7 @@ impl<'a> Pruner<'a> {
                 check(job)?;
                 Ok((*n, self.verdict(*n)))
             };
-            let asked = open
-                .par_iter()
-                .map(ask)
-                .collect::<Result<Vec<_>, Cancelled>>()?;
+            let asked = open.par_iter().map(ask).collect::<Result<Vec<_>, Cancelled>>()?;
             open.clear();
             for (node, verdict) in asked {
                 match verdict {
@@ -140,11 +125,7 @@ impl<'a> Pruner<'a> {
         let cubes: Cubes = std::array::from_fn(|n| {
             let at = cube(lo, n);
             let beyond = (0..3).any(|a| at[a] >= self.lattice.size[a]);
-            if beyond {
-                Some(Side::Outside)
-            } else {
-                self.closed_side(at, CUBE)
-            }
+            if beyond { Some(Side::Outside) } else { self.closed_side(at, CUBE) }
         });
         match cubes[0] {
             Some(side) if cubes.iter().all(|&c| c == cubes[0]) => Verdict::One(side),

@@ -12,10 +12,7 @@ pub struct Ball {
 }
 
 pub fn ball(x: f64, y: f64, z: f64, radius: f64) -> Ball {
-    Ball {
-        centre: DVec3::new(x, y, z),
-        radius,
-    }
+    Ball { centre: DVec3::new(x, y, z), radius }
 }
 
 /// Any formula with a known Lipschitz constant, within a box.
@@ -58,14 +55,7 @@ impl Csg {
         let mut coordinate = move || r.next() * within;
         Self(
             (0..count)
-                .map(|_| {
-                    ball(
-                        coordinate(),
-                        coordinate(),
-                        coordinate(),
-                        coordinate().abs() * 0.5,
-                    )
-                })
+                .map(|_| ball(coordinate(), coordinate(), coordinate(), coordinate().abs() * 0.5))
                 .collect(),
         )
     }
@@ -89,9 +79,7 @@ impl Field for Csg {
         f
     }
     fn support(&self) -> Aabb {
-        self.0
-            .iter()
-            .fold(Aabb::EMPTY, |b, ball| b.hull(ball.support()))
+        self.0.iter().fold(Aabb::EMPTY, |b, ball| b.hull(ball.support()))
     }
 }
 
@@ -99,11 +87,7 @@ impl Field for Csg {
 pub fn torus(ring: f64, tube: f64) -> impl Field {
     let half = DVec3::new(ring + tube, ring + tube, tube);
     let value = move |p: DVec3| DVec2::new(p.truncate().length() - ring, p.z).length() - tube;
-    Lipschitz {
-        value,
-        constant: 1.0,
-        support: Aabb::around(DVec3::ZERO, half),
-    }
+    Lipschitz { value, constant: 1.0, support: Aabb::around(DVec3::ZERO, half) }
 }
 
 /// A gyroid of the given wave length, cut out by a ball. Each component of the gyroid's gradient
@@ -115,11 +99,7 @@ pub fn gyroid(wave: f64, radius: f64) -> impl Field {
         let g = s.x * c.y + s.y * c.z + s.z * c.x;
         (g / (k * 3.0f64.sqrt())).max(p.length() - radius)
     };
-    Lipschitz {
-        value,
-        constant: 1.0,
-        support: Aabb::around(DVec3::ZERO, DVec3::splat(radius)),
-    }
+    Lipschitz { value, constant: 1.0, support: Aabb::around(DVec3::ZERO, DVec3::splat(radius)) }
 }
 
 /// xorshift64*: numbers in [-1, 1).

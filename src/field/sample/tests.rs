@@ -20,10 +20,7 @@ fn assert_same(sparse: &Sampling, dense: &Sampling) {
                 let want = dense.bricks.sample(at, f32::NAN, f32::NAN);
                 let got = sparse.bricks.sample(at, f32::NEG_INFINITY, f32::INFINITY);
                 assert_eq!(got < 0.0, want < 0.0, "sign at {at:?}");
-                assert!(
-                    got.is_infinite() || got == want,
-                    "value at {at:?}: {got}, {want}"
-                );
+                assert!(got.is_infinite() || got == want, "value at {at:?}: {got}, {want}");
             }
         }
     }
@@ -60,11 +57,7 @@ fn sparse_equals_dense() {
 /// A surface close to a face between bricks: its crossings need samples of skipped bricks.
 #[test]
 fn bricks_beside_a_crossing_hold_samples() {
-    let lattice = Lattice {
-        origin: DVec3::splat(-8.0),
-        step: 0.5,
-        size: [33; 3],
-    };
+    let lattice = Lattice { origin: DVec3::splat(-8.0), step: 0.5, size: [33; 3] };
     // between samples 7 and 8 of a brick along each axis
     for at in [3.51, 3.7, 3.99, 4.0] {
         let value = move |p: DVec3| (p.abs() - at).max_element();
@@ -85,12 +78,7 @@ fn bricks_beside_a_crossing_hold_samples() {
                 }
                 assert!(matches!(b, Brick::Band(_)));
                 for n in 0..8 {
-                    assert!(
-                        sparse
-                            .bricks
-                            .sample(corner(n), f32::NAN, f32::NAN)
-                            .is_finite()
-                    );
+                    assert!(sparse.bricks.sample(corner(n), f32::NAN, f32::NAN).is_finite());
                 }
             }
         }
@@ -101,11 +89,7 @@ fn bricks_beside_a_crossing_hold_samples() {
 #[test]
 fn the_border_is_outside() {
     for size in [[32; 3], [33; 3], [34, 41, 40], [9, 2, 17]] {
-        let lattice = Lattice {
-            origin: DVec3::splat(-5.0),
-            step: 0.4,
-            size,
-        };
+        let lattice = Lattice { origin: DVec3::splat(-5.0), step: 0.4, size };
         for radius in [40.0, 8.0, 4.0] {
             let (sparse, dense) = compare(&ball(0.3, -1.0, 0.2, radius), lattice);
             assert_eq!(sparse.stats.border_clipped, radius > 4.0);
@@ -162,11 +146,7 @@ fn odd_values_become_finite_samples() {
 #[test]
 fn an_empty_lattice_has_no_samples() {
     for size in [[0, 0, 0], [0, 4, 4], [1, 1, 1]] {
-        let lattice = Lattice {
-            origin: DVec3::ZERO,
-            step: 1.0,
-            size,
-        };
+        let lattice = Lattice { origin: DVec3::ZERO, step: 1.0, size };
         compare(&ball(0.0, 0.0, 0.0, 3.0), lattice);
     }
 }
@@ -174,11 +154,7 @@ fn an_empty_lattice_has_no_samples() {
 /// Samples of a ball too small for the lattice show nothing; the subdivision finds it.
 #[test]
 fn undecided_finds_a_ball_between_samples() {
-    let lattice = Lattice {
-        origin: DVec3::splat(-8.0),
-        step: 1.0,
-        size: [17; 3],
-    };
+    let lattice = Lattice { origin: DVec3::splat(-8.0), step: 1.0, size: [17; 3] };
     let big = ball(0.1, 0.2, 0.3, 4.0);
     let small = ball(6.45, 6.5, 6.55, 0.2);
     let both = Csg(vec![big, small]);

@@ -40,36 +40,24 @@ pub fn undecided(
 ) -> Result<Undecided, Cancelled> {
     job.stage("decide");
     let bricks = &of.bricks;
-    let search = Search {
-        f,
-        lattice: &bricks.lattice,
-        pruner: Pruner::new(f, &bricks.lattice),
-    };
+    let search = Search { f, lattice: &bricks.lattice, pruner: Pruner::new(f, &bricks.lattice) };
     let count = |i: usize| {
         check(job)?;
         let mut found = Undecided::default();
         if matches!(bricks.bricks.get(i), Some(Brick::Band(_))) {
-            search.block(
-                of,
-                bricks.place(i).map(|b| b * BRICK),
-                BRICK,
-                floor_levels,
-                &mut found,
-            );
+            search.block(of, bricks.place(i).map(|b| b * BRICK), BRICK, floor_levels, &mut found);
         }
         Ok(found)
     };
     let parts = (0..bricks.bricks.len()).into_par_iter().map(count);
     let parts = parts.collect::<Result<Vec<_>, Cancelled>>()?;
-    Ok(parts
-        .into_iter()
-        .fold(Undecided::default(), |a, b| Undecided {
-            undecided: a.undecided + b.undecided,
-            decided: a.decided + b.decided,
-            missed: a.missed + b.missed,
-            left: a.left + b.left,
-            example: a.example.or(b.example),
-        }))
+    Ok(parts.into_iter().fold(Undecided::default(), |a, b| Undecided {
+        undecided: a.undecided + b.undecided,
+        decided: a.decided + b.decided,
+        missed: a.missed + b.missed,
+        left: a.left + b.left,
+        example: a.example.or(b.example),
+    }))
 }
 
 struct Search<'a> {
@@ -114,10 +102,7 @@ impl Search<'_> {
         }
         out.undecided += 1;
         let [i, j, k] = lo;
-        let b = Aabb::new(
-            self.lattice.point(i, j, k),
-            self.lattice.point(i + 1, j + 1, k + 1),
-        );
+        let b = Aabb::new(self.lattice.point(i, j, k), self.lattice.point(i + 1, j + 1, k + 1));
         match self.subdivide(&b, inside, levels) {
             Found::Decided => out.decided += 1,
             Found::Left => out.left += 1,

@@ -63,13 +63,10 @@ impl Sampled {
     /// Gives fine leaves the values of coarser neighbours on common faces, coarsest first.
     fn join_levels(&mut self, top: u32) {
         for level in (0..top).rev() {
-            let todo: Vec<usize> = (0..self.leaves.len())
-                .filter(|&l| self.leaves[l].level == level)
-                .collect();
-            let fixes: Vec<Vec<(usize, f32)>> = todo
-                .par_iter()
-                .map(|&leaf| self.coarser_on_faces(leaf))
-                .collect();
+            let todo: Vec<usize> =
+                (0..self.leaves.len()).filter(|&l| self.leaves[l].level == level).collect();
+            let fixes: Vec<Vec<(usize, f32)>> =
+                todo.par_iter().map(|&leaf| self.coarser_on_faces(leaf)).collect();
             for (at, value) in fixes.into_iter().flatten() {
                 self.data[at] = value;
             }
@@ -93,11 +90,8 @@ impl Sampled {
             return out;
         }
         for n in 0..LEAF {
-            let ijk = IVec3::new(
-                (n % SIDE) as i32,
-                (n / SIDE % SIDE) as i32,
-                (n / (SIDE * SIDE)) as i32,
-            );
+            let ijk =
+                IVec3::new((n % SIDE) as i32, (n / SIDE % SIDE) as i32, (n / (SIDE * SIDE)) as i32);
             let on_face = ijk.cmpeq(IVec3::ZERO) | ijk.cmpeq(IVec3::splat(CELLS));
             if !on_face.any() {
                 continue;
@@ -146,9 +140,7 @@ impl Sampled {
 /// a few per cent for others, unbiased over a surface.
 fn inside_share(s: &[f32], at: usize) -> f64 {
     let v = [0, 1, 9, 10, 81, 82, 90, 91].map(|o| f64::from(s[at + o]));
-    let (neg, all) = v
-        .iter()
-        .fold((0.0, 0.0), |(n, a), &x| (n + (-x).max(0.0), a + x.abs()));
+    let (neg, all) = v.iter().fold((0.0, 0.0), |(n, a), &x| (n + (-x).max(0.0), a + x.abs()));
     if all > 0.0 { neg / all } else { 0.0 }
 }
 
@@ -175,20 +167,15 @@ impl Grid {
         for z in 0..roots.z {
             for y in 0..roots.y {
                 for x in 0..roots.x {
-                    open.push(Leaf {
-                        corner: IVec3::new(x, y, z) * (CELLS << top),
-                        level: top,
-                    });
+                    open.push(Leaf { corner: IVec3::new(x, y, z) * (CELLS << top), level: top });
                 }
             }
         }
         let mut done = Vec::new();
         for level in (0..=top).rev() {
             job::check(job)?;
-            let split: Vec<bool> = open
-                .par_iter()
-                .map(|l| level > 0 && self.must_split(field, l))
-                .collect();
+            let split: Vec<bool> =
+                open.par_iter().map(|l| level > 0 && self.must_split(field, l)).collect();
             let mut next = Vec::new();
             for (leaf, split) in open.into_iter().zip(split) {
                 if !split {
@@ -198,10 +185,7 @@ impl Grid {
                 let half = CELLS << (level - 1);
                 for o in 0..8 {
                     let shift = IVec3::new(o & 1, o >> 1 & 1, o >> 2 & 1) * half;
-                    next.push(Leaf {
-                        corner: leaf.corner + shift,
-                        level: level - 1,
-                    });
+                    next.push(Leaf { corner: leaf.corner + shift, level: level - 1 });
                 }
             }
             open = next;

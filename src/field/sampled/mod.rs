@@ -61,10 +61,7 @@ impl Sampled {
 
     /// Number of leaves and bytes held.
     pub fn size(&self) -> (usize, usize) {
-        (
-            self.leaves.len(),
-            self.data.len() * 4 + self.table.len() * 4,
-        )
+        (self.leaves.len(), self.data.len() * 4 + self.table.len() * 4)
     }
 
     /// Volume of the inside, mm³, counted from the samples (each cell by the share of its trilinear
@@ -89,9 +86,7 @@ impl Sampled {
     fn interpolate_in(&self, leaf: usize, u: DVec3) -> f64 {
         let Leaf { corner, level } = self.leaves[leaf];
         let local = (u - corner.as_dvec3()) * (1.0 / f64::from(1u32 << level));
-        let cell = local
-            .floor()
-            .clamp(DVec3::ZERO, DVec3::splat(f64::from(CELLS - 1)));
+        let cell = local.floor().clamp(DVec3::ZERO, DVec3::splat(f64::from(CELLS - 1)));
         let f = local - cell;
         let (i, j, k) = (cell.x as usize, cell.y as usize, cell.z as usize);
         let at = leaf * LEAF + i + SIDE * (j + SIDE * k);
@@ -119,11 +114,7 @@ impl Field for Sampled {
         let c = b.centre();
         let inside = Aabb::new(self.bounds.clamp(b.min), self.bounds.clamp(b.max));
         let (range, slope) = self.range(&inside);
-        let away = b
-            .corners()
-            .iter()
-            .map(|&p| self.bounds.distance(p))
-            .fold(0.0, f64::max);
+        let away = b.corners().iter().map(|&p| self.bounds.distance(p)).fold(0.0, f64::max);
         let by_samples = Interval::new(range.lo, range.hi + away);
         // the trilinear form of a leaf changes by at most `slope` a mm, the way outside by 1
         let steep = if away > 0.0 { slope + 1.0 } else { slope };

@@ -15,18 +15,10 @@ struct Span {
 }
 
 impl Span {
-    const NONE: Self = Self {
-        lo: f32::INFINITY,
-        hi: f32::NEG_INFINITY,
-        slope: 0.0,
-    };
+    const NONE: Self = Self { lo: f32::INFINITY, hi: f32::NEG_INFINITY, slope: 0.0 };
 
     fn hull(self, o: Self) -> Self {
-        Self {
-            lo: self.lo.min(o.lo),
-            hi: self.hi.max(o.hi),
-            slope: self.slope.max(o.slope),
-        }
+        Self { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi), slope: self.slope.max(o.slope) }
     }
 }
 
@@ -92,11 +84,7 @@ fn span(s: &[f32], step: f64, level: u32) -> Span {
     }
     let h = step * f64::from(1u32 << level);
     let slope = DVec3::from(rise.map(f64::from)).length() / h;
-    Span {
-        lo,
-        hi,
-        slope: (slope * 1.000_001) as f32,
-    }
+    Span { lo, hi, slope: (slope * 1.000_001) as f32 }
 }
 
 impl Sampled {
@@ -112,10 +100,7 @@ impl Sampled {
         } else {
             self.blocks(b0, b1)
         };
-        (
-            Interval::new(f64::from(span.lo), f64::from(span.hi)),
-            f64::from(span.slope),
-        )
+        (Interval::new(f64::from(span.lo), f64::from(span.hi)), f64::from(span.slope))
     }
 
     /// The samples of the cells that the box touches, in the few leaves it lies in.
@@ -143,14 +128,8 @@ impl Sampled {
         let Leaf { corner, level } = self.leaves[leaf];
         let scale = 1.0 / f64::from(1u32 << level);
         let top = DVec3::splat(f64::from(CELLS));
-        let a = ((low - corner.as_dvec3()) * scale)
-            .clamp(DVec3::ZERO, top)
-            .floor()
-            .as_ivec3();
-        let b = ((high - corner.as_dvec3()) * scale)
-            .clamp(DVec3::ZERO, top)
-            .ceil()
-            .as_ivec3();
+        let a = ((low - corner.as_dvec3()) * scale).clamp(DVec3::ZERO, top).floor().as_ivec3();
+        let b = ((high - corner.as_dvec3()) * scale).clamp(DVec3::ZERO, top).ceil().as_ivec3();
         let whole = self.ranges.leaves[leaf];
         if a == IVec3::ZERO && b == IVec3::splat(CELLS) {
             return whole;
@@ -164,11 +143,7 @@ impl Sampled {
                 }
             }
         }
-        Span {
-            lo,
-            hi,
-            slope: whole.slope,
-        }
+        Span { lo, hi, slope: whole.slope }
     }
 
     /// Whole blocks of the pyramid, at the level where few of them cover the box.

@@ -36,10 +36,7 @@ fn error_is_within_the_stated_bound_and_falls_with_the_step() {
         for p in points(20_000, 60.0) {
             let (got, want) = (s.value(p), ball.value(p));
             let leaf = step.max(want.abs() / 4.0 + step);
-            assert!(
-                (got - want).abs() <= 3f64.sqrt() / 2.0 * leaf,
-                "{p}: {got} {want}"
-            );
+            assert!((got - want).abs() <= 3f64.sqrt() / 2.0 * leaf, "{p}: {got} {want}");
             if want.abs() < step {
                 near = near.max((got - want).abs());
             }
@@ -55,17 +52,11 @@ fn error_is_within_the_stated_bound_and_falls_with_the_step() {
 fn continuous_across_levels() {
     let ball = Ball(DVec3::ZERO, 80.0);
     let s = Sampled::new(&ball, 0.5, &Quiet).unwrap();
-    assert!(
-        s.leaves.iter().any(|l| l.level > 1),
-        "the test needs several levels"
-    );
+    assert!(s.leaves.iter().any(|l| l.level > 1), "the test needs several levels");
     for p in points(20_000, 90.0) {
         // the steepest a trilinear form of a distance can be is √3, and twice 1e-6 of way
         let e = DVec3::new(1e-6, -1e-6, 1e-6);
-        assert!(
-            (s.value(p + e) - s.value(p - e)).abs() < 1e-5,
-            "jump at {p}"
-        );
+        assert!((s.value(p + e) - s.value(p - e)).abs() < 1e-5, "jump at {p}");
     }
     // across every plane on which leaves may end
     for p in points(5_000, 90.0) {
@@ -73,10 +64,7 @@ fn continuous_across_levels() {
         q.x = (q.x / 8.0).round() * 8.0;
         let q = q * s.step + s.origin;
         let e = DVec3::X * 1e-7;
-        assert!(
-            (s.value(q + e) - s.value(q - e)).abs() < 1e-5,
-            "jump at {q}"
-        );
+        assert!((s.value(q + e) - s.value(q - e)).abs() < 1e-5, "jump at {q}");
     }
 }
 
@@ -100,9 +88,5 @@ fn bound_holds() {
 fn volume_of_a_ball() {
     let s = Sampled::new(&Ball(DVec3::ZERO, 30.0), 1.0, &Quiet).unwrap();
     let want = 4.0 / 3.0 * std::f64::consts::PI * 27_000.0;
-    assert!(
-        (s.volume() / want - 1.0).abs() < 0.003,
-        "{} against {want}",
-        s.volume()
-    );
+    assert!((s.volume() / want - 1.0).abs() < 0.003, "{} against {want}", s.volume());
 }

@@ -21,12 +21,7 @@ pub struct Shape {
 
 impl Shape {
     pub fn sound(&self) -> bool {
-        (
-            self.bad_edges,
-            self.bad_points,
-            self.idle_points,
-            self.degenerate,
-        ) == (0, 0, 0, 0)
+        (self.bad_edges, self.bad_points, self.idle_points, self.degenerate) == (0, 0, 0, 0)
     }
 
     pub fn of(mesh: &TriMesh) -> Self {
@@ -52,15 +47,10 @@ impl Shape {
             .filter(|p| p.as_vec3().as_dvec3() == **p)
             .map(|p| (p.as_vec3() + 0.0).to_array().map(f32::to_bits))
             .collect();
-        let flat = (0..mesh.faces.len())
-            .filter(|&n| mesh.area_vector(n) == DVec3::ZERO)
-            .count();
+        let flat = (0..mesh.faces.len()).filter(|&n| mesh.area_vector(n) == DVec3::ZERO).count();
         Self {
             bad_edges: directed.iter().filter(bad).count(),
-            bad_points: links
-                .iter()
-                .filter(|l| !l.is_empty() && !one_fan(l))
-                .count(),
+            bad_points: links.iter().filter(|l| !l.is_empty() && !one_fan(l)).count(),
             idle_points: links.len() - used,
             degenerate: flat + (mesh.points.len() - places.len()),
             components: (0..joined.len())

@@ -21,11 +21,7 @@ fn chaos() -> impl Field {
         let mut r = Random(x ^ y.rotate_left(21) ^ z.rotate_left(42) | 1);
         (0..3).map(|_| r.next()).sum()
     };
-    Lipschitz {
-        value,
-        constant: f64::INFINITY,
-        support: Aabb::ALL,
-    }
+    Lipschitz { value, constant: f64::INFINITY, support: Aabb::ALL }
 }
 
 #[test]
@@ -36,10 +32,7 @@ fn whatever_the_field_says_the_mesh_is_sound() {
             let plain = extract(&bricks, Mesher::Cone, &Quiet).unwrap();
             let (shape, plain) = (Shape::of(&mesh), Shape::of(&plain));
             assert!(shape.sound(), "{size}, {seed}: {shape:?}");
-            assert_eq!(
-                (shape.components, shape.euler),
-                (plain.components, plain.euler)
-            );
+            assert_eq!((shape.components, shape.euler), (plain.components, plain.euler));
         }
     }
 }
@@ -52,11 +45,8 @@ fn a_box_keeps_its_corners_and_edges() {
         let d = (turn * p).abs() - half;
         d.max(DVec3::ZERO).length() + d.max_element().min(0.0)
     };
-    let f = Lipschitz {
-        value,
-        constant: 1.0,
-        support: Aabb::around(DVec3::ZERO, DVec3::splat(10.0)),
-    };
+    let f =
+        Lipschitz { value, constant: 1.0, support: Aabb::around(DVec3::ZERO, DVec3::splat(10.0)) };
     let mesh = sharp(&f, 11.0, 0.5);
     assert!(Shape::of(&mesh).sound());
     for corner in Aabb::around(DVec3::ZERO, half).corners() {
@@ -66,16 +56,8 @@ fn a_box_keeps_its_corners_and_edges() {
     }
     // without the field, bevels take half a per cent off
     assert!((mesh.volume() / 960.0 - 1.0).abs() < 1e-3);
-    let off = mesh
-        .points
-        .iter()
-        .filter(|&&p| f.value(p).abs() > 0.01)
-        .count();
-    assert!(
-        off * 50 < mesh.points.len(),
-        "{off} of {}",
-        mesh.points.len()
-    );
+    let off = mesh.points.iter().filter(|&&p| f.value(p).abs() > 0.01).count();
+    assert!(off * 50 < mesh.points.len(), "{off} of {}", mesh.points.len());
 }
 
 /// The mesh without the field is off by 0.025 and 0.0063.
@@ -84,11 +66,7 @@ fn a_ball_is_met_closely() {
     let f = ball(0.2, 0.1, -0.3, 10.0);
     for step in [1.0, 0.5] {
         let mesh = sharp(&f, 12.0, step);
-        let far = mesh
-            .points
-            .iter()
-            .map(|&p| f.value(p).abs())
-            .fold(0.0, f64::max);
+        let far = mesh.points.iter().map(|&p| f.value(p).abs()).fold(0.0, f64::max);
         assert!(far < 0.01 * step * step, "{far}");
     }
 }
@@ -106,10 +84,7 @@ fn a_cut_at_the_border_is_flat_and_closed() {
 #[test]
 fn the_same_on_any_number_of_threads() {
     let run = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| sharp(&gyroid(9.0, 12.0), 13.0, 0.7))
     };
     assert_eq!(run(1), run(2));

@@ -47,10 +47,7 @@ impl<'a> Buffers<'a> {
             }
             let (has, wants) = (loaded[n].len(), buffer.byte_length);
             if wants > has as u64 {
-                return fault(
-                    at,
-                    format!("byteLength is {wants}, but there are {has} bytes"),
-                );
+                return fault(at, format!("byteLength is {wants}, but there are {has} bytes"));
             }
             index.push(n);
         }
@@ -58,10 +55,7 @@ impl<'a> Buffers<'a> {
     }
 
     pub fn get(&self, declared: usize) -> Option<&[u8]> {
-        self.index
-            .get(declared)
-            .and_then(|&n| self.loaded.get(n))
-            .map(|b| &**b)
+        self.index.get(declared).and_then(|&n| self.loaded.get(n)).map(|b| &**b)
     }
 
     /// Bytes in memory.
@@ -101,9 +95,8 @@ fn fetch(uri: &str, folder: &Path, at: &str) -> Parsed<Vec<u8>> {
 }
 
 fn from_data(data: &str, at: &str) -> Parsed<Vec<u8>> {
-    let body = data
-        .split_once(',')
-        .and_then(|(kind, body)| kind.ends_with(";base64").then_some(body));
+    let body =
+        data.split_once(',').and_then(|(kind, body)| kind.ends_with(";base64").then_some(body));
     let Some(body) = body else {
         return fault(at, "a data: URI that is not base64");
     };
@@ -143,17 +136,11 @@ fn base64(text: &[u8]) -> Option<Vec<u8>> {
 fn from_file(uri: &str, folder: &Path, at: &str) -> Parsed<Vec<u8>> {
     let refused = |why: &str| fault(at, format!("`{}` {why}", brief(uri)));
     let relative = Path::new(uri);
-    let plain = relative
-        .components()
-        .all(|c| matches!(c, Component::Normal(_)));
+    let plain = relative.components().all(|c| matches!(c, Component::Normal(_)));
     if uri.is_empty() || !plain || uri.contains([':', '\\', '\0', '?', '#']) {
         return refused("is not read: a buffer must be a file in the folder of its glTF");
     }
-    let folder = if folder.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        folder
-    };
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let real = |p: &Path| -> std::io::Result<PathBuf> { p.canonicalize() };
     let (home, path) = match (real(folder), real(&folder.join(relative))) {
         (Ok(home), Ok(path)) => (home, path),
@@ -169,9 +156,7 @@ fn from_file(uri: &str, folder: &Path, at: &str) -> Parsed<Vec<u8>> {
     let read = File::open(&path).and_then(|f| {
         let size = f.metadata()?.len();
         let room = usize::try_from(size).unwrap_or(usize::MAX);
-        bytes
-            .try_reserve_exact(room)
-            .map_err(std::io::Error::other)?;
+        bytes.try_reserve_exact(room).map_err(std::io::Error::other)?;
         f.take(size).read_to_end(&mut bytes)
     });
     match read {
@@ -200,11 +185,7 @@ mod tests {
             ("Zm9vYmE=", "fooba"),
             ("Zm9vYmFy", "foobar"),
         ] {
-            assert_eq!(
-                base64(text.as_bytes()).as_deref(),
-                Some(bytes.as_bytes()),
-                "{text}"
-            );
+            assert_eq!(base64(text.as_bytes()).as_deref(), Some(bytes.as_bytes()), "{text}");
         }
         assert_eq!(base64(b"Zm9v!A"), None);
         assert_eq!(base64(b"Zm9vY"), None);

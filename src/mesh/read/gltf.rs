@@ -25,11 +25,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path, mm: f64) -> Parsed<Soup> {
     if bytes.is_empty() {
         return Ok(Soup::default());
     }
-    let (json, chunk) = if bytes.starts_with(b"glTF") {
-        unpack(bytes)?
-    } else {
-        (bytes, None)
-    };
+    let (json, chunk) = if bytes.starts_with(b"glTF") { unpack(bytes)? } else { (bytes, None) };
     let json = json.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(json);
     let document: Document = match serde_json::from_slice(json) {
         Ok(d) => d,
@@ -38,15 +34,8 @@ pub(super) fn read(bytes: &[u8], folder: &Path, mm: f64) -> Parsed<Soup> {
     document.check()?;
     let buffers = Buffers::load(&document.buffers, chunk, folder)?;
     let room = MOST_EXTRA + bytes.len() as u64 + buffers.total();
-    let source = Source {
-        document: &document,
-        buffers,
-    };
-    let mut scene = Reader {
-        source,
-        soup: Soup::default(),
-        room,
-    };
+    let source = Source { document: &document, buffers };
+    let mut scene = Reader { source, soup: Soup::default(), room };
     scene.walk(DAffine3::from_scale(DVec3::splat(mm)))?;
     Ok(scene.soup)
 }
@@ -58,20 +47,14 @@ fn unpack(bytes: &[u8]) -> Parsed<(&[u8], Option<&[u8]>)> {
         raw.map(|b| u32::from_le_bytes(*b))
     };
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return fault(
-            "header",
-            format!("{} bytes; a GLB has at least 20", bytes.len()),
-        );
+        return fault("header", format!("{} bytes; a GLB has at least 20", bytes.len()));
     };
     if version != 2 {
         return fault("header", format!("GLB version {version}, expected 2"));
     }
     let has = bytes.len();
     let Some(all) = bytes.get(..length as usize) else {
-        return fault(
-            "header",
-            format!("length is {length}, but the file has {has} bytes"),
-        );
+        return fault("header", format!("length is {length}, but the file has {has} bytes"));
     };
     let (mut json, mut binary, mut at) = (None, None, 12);
     while let (Some(size), Some(kind)) = (word(at), word(at + 4)) {
@@ -110,26 +93,15 @@ impl Reader<'_> {
     fn walk(&mut self, root: DAffine3) -> Parsed<()> {
         let nodes = &self.source.document.nodes;
         let mut seen = vec![false; nodes.len()];
-        let mut todo: Vec<_> = self
-            .source
-            .document
-            .roots()?
-            .into_iter()
-            .map(|n| (n, root))
-            .collect();
+        let mut todo: Vec<_> =
+            self.source.document.roots()?.into_iter().map(|n| (n, root)).collect();
         todo.reverse();
         while let Some((i, above)) = todo.pop() {
             let Some(node) = nodes.get(i) else {
-                return fault(
-                    format!("nodes[{i}]"),
-                    format!("there are {} nodes", nodes.len()),
-                );
+                return fault(format!("nodes[{i}]"), format!("there are {} nodes", nodes.len()));
             };
             if std::mem::replace(&mut seen[i], true) {
-                return fault(
-                    format!("nodes[{i}]"),
-                    "reached twice: nodes must form a tree",
-                );
+                return fault(format!("nodes[{i}]"), "reached twice: nodes must form a tree");
             }
             let here = above * node.transform();
             if let Some(mesh) = node.mesh {
@@ -198,10 +170,7 @@ impl Reader<'_> {
             return fault(at, why);
         }
         if let Some(v) = faces.iter().find(|&&v| v as usize >= points.count) {
-            return fault(
-                at,
-                format!("index {v}, but there are {} points", points.count),
-            );
+            return fault(at, format!("index {v}, but there are {} points", points.count));
         }
         let start = self.soup.points.len();
         let mut take = |i: usize| self.soup.points.push(to.transform_point3(points.point(i)));
@@ -223,9 +192,7 @@ impl Reader<'_> {
         if to.matrix3.determinant() < 0.0 {
             faces.chunks_exact_mut(3).for_each(|f| f.swap(1, 2));
         }
-        self.soup
-            .corners
-            .extend(faces.iter().map(|v| v + start as u32));
+        self.soup.corners.extend(faces.iter().map(|v| v + start as u32));
         Ok(())
     }
 }
@@ -237,13 +204,7 @@ fn triangles(order: &[u32], mode: u32) -> Vec<u32> {
         5 => order
             .windows(3)
             .enumerate()
-            .flat_map(|(i, w)| {
-                if i % 2 == 0 {
-                    [w[0], w[1], w[2]]
-                } else {
-                    [w[1], w[0], w[2]]
-                }
-            })
+            .flat_map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] })
             .collect(),
         _ => order
             .iter()

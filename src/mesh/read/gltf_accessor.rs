@@ -32,12 +32,7 @@ impl Source<'_> {
             );
             return fault(format!("accessors[{id}]"), why);
         }
-        let index = |i| {
-            a.item(i)
-                .iter()
-                .rev()
-                .fold(0, |n, &b| n << 8 | u32::from(b))
-        };
+        let index = |i| a.item(i).iter().rev().fold(0, |n, &b| n << 8 | u32::from(b));
         Ok((0..a.count).map(index).collect())
     }
 
@@ -68,10 +63,7 @@ impl Source<'_> {
         };
         let stride = d.buffer_views[view].byte_stride.unwrap_or(size);
         if stride < size {
-            return fault(
-                at,
-                format!("byteStride {stride} is under the {size} bytes of an item"),
-            );
+            return fault(at, format!("byteStride {stride} is under the {size} bytes of an item"));
         }
         let last = a.count.saturating_sub(1).checked_mul(stride);
         let end = last.and_then(|n| n.checked_add(size)?.checked_add(a.byte_offset));
@@ -83,38 +75,23 @@ impl Source<'_> {
         let bytes = bytes.get(a.byte_offset as usize..).unwrap_or_default();
         let (stride, size) = (stride as usize, size as usize);
         let (component, shape) = (a.component_type, a.shape.as_str());
-        Ok(Items {
-            bytes,
-            stride,
-            size,
-            count: a.count as usize,
-            component,
-            shape,
-        })
+        Ok(Items { bytes, stride, size, count: a.count as usize, component, shape })
     }
 
     fn view(&self, i: usize) -> Parsed<&[u8]> {
         let at = format!("bufferViews[{i}]");
         let Some(view) = self.document.buffer_views.get(i) else {
-            return fault(
-                at,
-                format!("there are {}", self.document.buffer_views.len()),
-            );
+            return fault(at, format!("there are {}", self.document.buffer_views.len()));
         };
         let Some(buffer) = self.buffers.get(view.buffer) else {
             let (n, count) = (view.buffer, self.document.buffers.len());
             return fault(at, format!("buffer {n}, but there are {count}"));
         };
         let end = view.byte_offset.checked_add(view.byte_length);
-        let range = usize::try_from(view.byte_offset)
-            .ok()
-            .zip(end.and_then(|e| e.try_into().ok()));
+        let range = usize::try_from(view.byte_offset).ok().zip(end.and_then(|e| e.try_into().ok()));
         match range.and_then(|(start, end): (usize, usize)| buffer.get(start..end)) {
             Some(bytes) => Ok(bytes),
-            None => fault(
-                at,
-                format!("reaches past the {} bytes of its buffer", buffer.len()),
-            ),
+            None => fault(at, format!("reaches past the {} bytes of its buffer", buffer.len())),
         }
     }
 }
@@ -131,10 +108,7 @@ pub(super) struct Items<'a> {
 
 impl Items<'_> {
     fn item(&self, i: usize) -> &[u8] {
-        self.bytes
-            .get(i * self.stride..)
-            .and_then(|b| b.get(..self.size))
-            .unwrap_or_default()
+        self.bytes.get(i * self.stride..).and_then(|b| b.get(..self.size)).unwrap_or_default()
     }
 
     /// Item `i` as three f32.

@@ -106,37 +106,24 @@ impl Document {
             return fault("asset.version", format!("`{version}`, expected 2.0"));
         }
         // Extensions that change how things look or move, not where the triangles are.
-        let harmless = [
-            "KHR_materials_",
-            "KHR_texture_",
-            "EXT_texture_",
-            "KHR_lights_",
-        ];
+        let harmless = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"];
         let bars = |e: &&String| {
             !harmless.iter().any(|h| e.starts_with(h)) && *e != "KHR_mesh_quantization"
         };
         match self.extensions_required.iter().find(bars) {
-            Some(e) => fault(
-                "extensionsRequired",
-                format!("`{e}` is not supported{}", hint(e)),
-            ),
+            Some(e) => fault("extensionsRequired", format!("`{e}` is not supported{}", hint(e))),
             None => Ok(()),
         }
     }
 
     /// The nodes to start from: those of the default scene, else of the first, else all roots.
     pub fn roots(&self) -> Parsed<Vec<usize>> {
-        let scene = self.scene.or(if self.scenes.is_empty() {
-            None
-        } else {
-            Some(0)
-        });
+        let scene = self.scene.or(if self.scenes.is_empty() { None } else { Some(0) });
         match scene.map(|i| self.scenes.get(i).ok_or(i)) {
             Some(Ok(scene)) => Ok(scene.nodes.clone()),
-            Some(Err(i)) => fault(
-                "scene",
-                format!("scene {i}, but there are {}", self.scenes.len()),
-            ),
+            Some(Err(i)) => {
+                fault("scene", format!("scene {i}, but there are {}", self.scenes.len()))
+            }
             None => {
                 let mut root = vec![true; self.nodes.len()];
                 for &child in self.nodes.iter().flat_map(|n| &n.children) {
@@ -151,11 +138,7 @@ impl Document {
 /// What to do about an extension.
 pub(super) fn hint(extension: &str) -> &'static str {
     let packed = ["draco", "meshopt"].iter().any(|p| extension.contains(p));
-    if packed {
-        "; export again without compression"
-    } else {
-        ""
-    }
+    if packed { "; export again without compression" } else { "" }
 }
 
 impl Node {
@@ -163,20 +146,11 @@ impl Node {
         if let Some(m) = &self.matrix {
             return DAffine3::from_mat4(DMat4::from_cols_array(m));
         }
-        let quat = self
-            .rotation
-            .as_deref()
-            .map_or(DQuat::IDENTITY, |&q| DQuat::from_array(q));
+        let quat = self.rotation.as_deref().map_or(DQuat::IDENTITY, |&q| DQuat::from_array(q));
         DAffine3::from_scale_rotation_translation(
             self.scale.as_deref().map_or(DVec3::ONE, |&s| s.into()),
-            if quat.length_squared() > 0.0 {
-                quat.normalize()
-            } else {
-                DQuat::IDENTITY
-            },
-            self.translation
-                .as_deref()
-                .map_or(DVec3::ZERO, |&t| t.into()),
+            if quat.length_squared() > 0.0 { quat.normalize() } else { DQuat::IDENTITY },
+            self.translation.as_deref().map_or(DVec3::ZERO, |&t| t.into()),
         )
     }
 }

@@ -58,22 +58,15 @@ pub fn read(path: &Path, assume: Assume) -> Result<Loaded, MeshError> {
     let format = Format::of(path)?;
     let bytes = contents(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let loaded =
-        load(&bytes, format, folder, assume).map_err(|Fault { place, why }| MeshError::Bad {
-            path: path.into(),
-            place,
-            why,
-        })?;
+    let loaded = load(&bytes, format, folder, assume)
+        .map_err(|Fault { place, why }| MeshError::Bad { path: path.into(), place, why })?;
     if loaded.mesh.faces.is_empty() {
         let why = match loaded.found.degenerate {
             _ if bytes.is_empty() => "the file is empty".into(),
             0 => "no triangles in the file".into(),
             n => format!("no triangles in the file, only {n} faces without area"),
         };
-        return Err(MeshError::Empty {
-            path: path.into(),
-            why,
-        });
+        return Err(MeshError::Empty { path: path.into(), why });
     }
     Ok(loaded)
 }
@@ -85,12 +78,7 @@ fn load(bytes: &[u8], format: Format, folder: &Path, assume: Assume) -> Parsed<L
     let (raw, kinds) = parse(bytes, format, folder, up, unit)?;
     let (mesh, counts) = welded(&raw);
     let found = Found::after(&mesh, raw.points.len(), kinds, counts);
-    Ok(Loaded {
-        mesh,
-        found,
-        up,
-        unit,
-    })
+    Ok(Loaded { mesh, found, up, unit })
 }
 
 /// The triangles of a file in mm, Z up, with its own points.
@@ -109,10 +97,7 @@ pub(super) fn parse(
         Format::Gltf => (gltf::read(bytes, folder, unit.mm())?, 1.0),
     };
     if soup.points.len() > u32::MAX as usize || soup.corners.len() / 3 > u32::MAX as usize {
-        return fault(
-            "size",
-            format!("{} points are more than 2^32", soup.points.len()),
-        );
+        return fault("size", format!("{} points are more than 2^32", soup.points.len()));
     }
     soup.check(mm)?;
     Ok(soup.cut(up, mm))
@@ -129,19 +114,11 @@ impl Format {
 
     /// The unit, when nobody says.
     pub fn unit(self) -> Unit {
-        if self == Self::Gltf {
-            Unit::M
-        } else {
-            Unit::Mm
-        }
+        if self == Self::Gltf { Unit::M } else { Unit::Mm }
     }
 
     fn of(path: &Path) -> Result<Self, MeshError> {
-        let extension = path
-            .extension()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .to_ascii_lowercase();
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         match extension.as_str() {
             "obj" => Ok(Self::Obj),
             "stl" => Ok(Self::Stl),
@@ -158,36 +135,23 @@ impl Format {
 
 /// All bytes of a regular file.
 fn contents(path: &Path) -> Result<Vec<u8>, MeshError> {
-    let failed = |cause| MeshError::Io {
-        path: path.into(),
-        doing: "read",
-        cause,
-    };
+    let failed = |cause| MeshError::Io { path: path.into(), doing: "read", cause };
     // Looked at before it is opened: opening a pipe would wait for its other end.
     let kind = std::fs::metadata(path).map_err(failed)?.file_type();
     if !kind.is_file() {
-        return Err(MeshError::NotAFile {
-            path: path.into(),
-            kind: kind_name(kind),
-        });
+        return Err(MeshError::NotAFile { path: path.into(), kind: kind_name(kind) });
     }
     let file = File::open(path).map_err(failed)?;
     let size = file.metadata().as_ref().map(Metadata::len).unwrap_or(0);
     let mut bytes = Vec::new();
     // A file may claim more than there is memory for; growing a vector by hand would abort.
     let room = usize::try_from(size).unwrap_or(usize::MAX);
-    bytes
-        .try_reserve_exact(room)
-        .map_err(|e| failed(io::Error::other(e)))?;
+    bytes.try_reserve_exact(room).map_err(|e| failed(io::Error::other(e)))?;
     file.take(size).read_to_end(&mut bytes).map_err(failed)?;
     Ok(bytes)
 }
 
 /// What stands where a file was expected.
 pub(super) fn kind_name(kind: FileType) -> &'static str {
-    if kind.is_dir() {
-        "folder"
-    } else {
-        "pipe or device"
-    }
+    if kind.is_dir() { "folder" } else { "pipe or device" }
 }

@@ -11,10 +11,7 @@ use crate::mesh::{
 use std::borrow::Cow;
 
 pub(super) fn read(bytes: &[u8]) -> Parsed<Soup> {
-    let mut soup = Soup {
-        first: 1,
-        ..Soup::default()
-    };
+    let mut soup = Soup { first: 1, ..Soup::default() };
     let mut input = lines(bytes);
     while let Some((at, line)) = input.next() {
         let mut rest = line;
@@ -26,8 +23,7 @@ pub(super) fn read(bytes: &[u8]) -> Parsed<Soup> {
         while let Some(start) = continued(&rest) {
             rest.to_mut().truncate(start);
             rest.to_mut().push(b' ');
-            rest.to_mut()
-                .extend_from_slice(input.next().map_or(&[][..], |l| l.1));
+            rest.to_mut().extend_from_slice(input.next().map_or(&[][..], |l| l.1));
         }
         if key == Some(b"v") {
             soup.points.push(three(&mut &*rest, at)?);
@@ -65,10 +61,7 @@ fn corner(w: &[u8], at: u64, points: usize) -> Parsed<u32> {
     let index: Option<i64> = std::str::from_utf8(head).ok().and_then(|s| s.parse().ok());
     let from_zero = match index {
         None => {
-            return fault(
-                place(at),
-                format!("`{}` is not a corner of a face", shown(w)),
-            );
+            return fault(place(at), format!("`{}` is not a corner of a face", shown(w)));
         }
         Some(0) => return fault(place(at), "point 0, but OBJ counts from 1"),
         Some(i) if i < 0 => i64::try_from(points).ok().and_then(|n| n.checked_add(i)),
@@ -76,12 +69,8 @@ fn corner(w: &[u8], at: u64, points: usize) -> Parsed<u32> {
     };
     match from_zero.and_then(|i| u32::try_from(i).ok()) {
         Some(i) => Ok(i),
-        None => fault(
-            place(at),
-            format!(
-                "point {}, but there are {points} points so far",
-                shown(head)
-            ),
-        ),
+        None => {
+            fault(place(at), format!("point {}, but there are {points} points so far", shown(head)))
+        }
     }
 }

@@ -107,24 +107,14 @@ struct Values<'a> {
 impl<'a> Values<'a> {
     fn after(head: &Header, bytes: &'a [u8]) -> Self {
         let rest = bytes.get(head.length..).unwrap_or_default();
-        Self {
-            rest,
-            encoding: head.encoding,
-            line: head.lines + 1,
-            element: b"",
-            row: 0,
-        }
+        Self { rest, encoding: head.encoding, line: head.lines + 1, element: b"", row: 0 }
     }
 
     /// Refuses a count that the bytes left cannot hold.
     fn has_room(&self, element: &Element) -> Parsed<()> {
         let least = element.least(self.encoding);
         // The blank after the last number of a text file may be missing.
-        if element
-            .count
-            .checked_mul(least)
-            .is_none_or(|n| n > self.rest.len() as u64 + 1)
-        {
+        if element.count.checked_mul(least).is_none_or(|n| n > self.rest.len() as u64 + 1) {
             let (name, count, left) = (shown(&element.name), element.count, self.rest.len());
             let why = format!("{count} rows of at least {least} bytes, but only {left} are left");
             return fault(format!("element {name}"), why);
@@ -157,10 +147,7 @@ impl<'a> Values<'a> {
         };
         let n = self.value(length)?;
         if !(n >= 0.0 && n <= self.rest.len() as f64 && n.fract() == 0.0) {
-            return fault(
-                self.place(),
-                format!("a list of {n} values, more than the file has"),
-            );
+            return fault(self.place(), format!("a list of {n} values, more than the file has"));
         }
         for _ in 0..n as usize {
             each(self.value(property.of)?);
@@ -191,11 +178,7 @@ impl<'a> Values<'a> {
 
     fn word(&mut self) -> Parsed<f64> {
         self.skip_blanks();
-        let end = self
-            .rest
-            .iter()
-            .position(u8::is_ascii_whitespace)
-            .unwrap_or(self.rest.len());
+        let end = self.rest.iter().position(u8::is_ascii_whitespace).unwrap_or(self.rest.len());
         let (w, rest) = self.rest.split_at(end);
         self.rest = rest;
         match number(w) {

@@ -86,10 +86,7 @@ pub(super) fn header(bytes: &[u8]) -> Parsed<Header> {
     let mut input = lines(bytes);
     let magic = input.next().map_or(&[][..], |l| l.1);
     if magic.trim_ascii_end() != b"ply" {
-        return fault(
-            place(1),
-            format!("`{}`; a PLY file begins with `ply`", shown(magic)),
-        );
+        return fault(place(1), format!("`{}`; a PLY file begins with `ply`", shown(magic)));
     }
     let mut length = magic.len() + 1;
     let mut encoding = None;
@@ -110,12 +107,7 @@ pub(super) fn header(bytes: &[u8]) -> Parsed<Header> {
                 let Some(encoding) = encoding else {
                     return fault(place(at), "no format line");
                 };
-                return Ok(Header {
-                    encoding,
-                    elements,
-                    length,
-                    lines: at,
-                });
+                return Ok(Header { encoding, elements, length, lines: at });
             }
             _ => return fault(place(at), format!("unknown header word `{}`", shown(key))),
         }
@@ -128,10 +120,7 @@ fn format(rest: &mut &[u8], at: u64) -> Parsed<Encoding> {
         Some(b"ascii") => Ok(Encoding::Ascii),
         Some(b"binary_little_endian") => Ok(Encoding::Little),
         Some(b"binary_big_endian") => Ok(Encoding::Big),
-        w => fault(
-            place(at),
-            format!("unknown format `{}`", shown(w.unwrap_or_default())),
-        ),
+        w => fault(place(at), format!("unknown format `{}`", shown(w.unwrap_or_default()))),
     }
 }
 
@@ -139,17 +128,10 @@ fn element(rest: &mut &[u8], at: u64) -> Parsed<Element> {
     let name = word(rest).unwrap_or_default();
     let count = word(rest).unwrap_or_default();
     match std::str::from_utf8(count).ok().and_then(|s| s.parse().ok()) {
-        Some(count) => Ok(Element {
-            name: name.into(),
-            count,
-            properties: vec![],
-        }),
+        Some(count) => Ok(Element { name: name.into(), count, properties: vec![] }),
         None => {
             let (name, count) = (shown(name), shown(count));
-            fault(
-                place(at),
-                format!("element {name} counts `{count}`, not a number"),
-            )
+            fault(place(at), format!("element {name} counts `{count}`, not a number"))
         }
     }
 }
@@ -157,10 +139,7 @@ fn element(rest: &mut &[u8], at: u64) -> Parsed<Element> {
 fn property(rest: &mut &[u8], at: u64) -> Parsed<Property> {
     let scalar = |w: Option<&[u8]>| match w.and_then(Scalar::named) {
         Some(s) => Ok(s),
-        None => fault(
-            place(at),
-            format!("unknown type `{}`", shown(w.unwrap_or_default())),
-        ),
+        None => fault(place(at), format!("unknown type `{}`", shown(w.unwrap_or_default()))),
     };
     let first = word(rest);
     let (list, of) = if first == Some(b"list") {
@@ -169,11 +148,7 @@ fn property(rest: &mut &[u8], at: u64) -> Parsed<Property> {
         (None, scalar(first)?)
     };
     match word(rest) {
-        Some(name) => Ok(Property {
-            name: name.into(),
-            list,
-            of,
-        }),
+        Some(name) => Ok(Property { name: name.into(), list, of }),
         None => fault(place(at), "a property without a name"),
     }
 }

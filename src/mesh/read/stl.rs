@@ -12,10 +12,7 @@ const FACET: usize = 50;
 
 /// Binary or ASCII: some binary files begin with `solid` too, so the size decides first.
 pub(super) fn read(bytes: &[u8]) -> Parsed<Soup> {
-    let claimed = bytes
-        .get(80..HEADER)
-        .and_then(|b| b.try_into().ok())
-        .map(u32::from_le_bytes);
+    let claimed = bytes.get(80..HEADER).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
     let fits = claimed.is_some_and(|n| bytes.len() as u64 == size_of(n));
     let mut text = bytes;
     let solid = word(&mut text).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"));
@@ -24,10 +21,7 @@ pub(super) fn read(bytes: &[u8]) -> Parsed<Soup> {
         _ if bytes.is_empty() => Ok(Soup::default()),
         _ if !fits && solid && !head.contains(&0) => ascii(bytes),
         Some(n) => binary(bytes, n),
-        None => fault(
-            "header",
-            format!("{} bytes; a binary STL has at least 84", bytes.len()),
-        ),
+        None => fault("header", format!("{} bytes; a binary STL has at least 84", bytes.len())),
     }
 }
 
@@ -36,9 +30,7 @@ fn size_of(facets: u32) -> u64 {
 }
 
 fn binary(bytes: &[u8], facets: u32) -> Parsed<Soup> {
-    let body = usize::try_from(size_of(facets))
-        .ok()
-        .and_then(|end| bytes.get(HEADER..end));
+    let body = usize::try_from(size_of(facets)).ok().and_then(|end| bytes.get(HEADER..end));
     let Some(body) = body else {
         let (wants, has) = (size_of(facets), bytes.len());
         let why = format!("{facets} triangles would take {wants} bytes, the file has {has}");
@@ -91,10 +83,7 @@ fn ascii(bytes: &[u8]) -> Parsed<Soup> {
             soup.sizes.push((soup.points.len() - from) as u32);
             soup.lines.push(short(at));
         } else if !is("facet") && !is("endfacet") {
-            return fault(
-                place(at),
-                format!("`{}` is no word of an ASCII STL", shown(key)),
-            );
+            return fault(place(at), format!("`{}` is no word of an ASCII STL", shown(key)));
         }
         if (is("facet") || is("endfacet") || is("endsolid")) && open.is_some() {
             return fault(place(at), format!("`{}` before endloop", shown(key)));
@@ -104,10 +93,7 @@ fn ascii(bytes: &[u8]) -> Parsed<Soup> {
         }
     }
     if solid {
-        return fault(
-            place(last),
-            "the file ends before endsolid: it was cut short",
-        );
+        return fault(place(last), "the file ends before endsolid: it was cut short");
     }
     number(&mut soup)?;
     Ok(soup)

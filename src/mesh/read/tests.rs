@@ -15,10 +15,7 @@ fn parsed(bytes: &[u8], extension: &str) -> Result<Loaded, String> {
 /// The same without turning or scaling.
 fn as_is(bytes: &[u8], extension: &str) -> Loaded {
     let format = Format::of(&Path::new("mesh").with_extension(extension)).unwrap();
-    let assume = Assume {
-        up: Some(Up::Z),
-        unit: Some(Unit::Mm),
-    };
+    let assume = Assume { up: Some(Up::Z), unit: Some(Unit::Mm) };
     match load(bytes, format, Path::new("/nowhere"), assume) {
         Ok(loaded) => loaded,
         Err(f) => panic!("{}: {}", f.place, f.why),
@@ -31,10 +28,7 @@ const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
 fn tetrahedron() -> TriMesh {
     let points = POINTS.map(|p| DVec3::from(p.map(f64::from))).to_vec();
-    TriMesh {
-        points,
-        faces: FACES.to_vec(),
-    }
+    TriMesh { points, faces: FACES.to_vec() }
 }
 
 fn binary_stl(header: &[u8]) -> Vec<u8> {
@@ -43,11 +37,7 @@ fn binary_stl(header: &[u8]) -> Vec<u8> {
     out.extend(4u32.to_le_bytes());
     for face in FACES {
         out.extend([0; 12]);
-        out.extend(
-            face.iter()
-                .flat_map(|&v| POINTS[v as usize])
-                .flat_map(f32::to_le_bytes),
-        );
+        out.extend(face.iter().flat_map(|&v| POINTS[v as usize]).flat_map(f32::to_le_bytes));
         out.extend([7, 7]);
     }
     out
@@ -80,11 +70,7 @@ fn ply(format: &str) -> Vec<u8> {
         if format == "ascii" {
             return;
         }
-        if big {
-            out.extend(le.iter().rev())
-        } else {
-            out.extend(le)
-        }
+        if big { out.extend(le.iter().rev()) } else { out.extend(le) }
     };
     put(&[2]);
     put(&5i16.to_le_bytes());
@@ -104,12 +90,8 @@ fn ply(format: &str) -> Vec<u8> {
     }
     if format == "ascii" {
         let mut text = "2 5 -6\n".to_owned();
-        POINTS
-            .iter()
-            .for_each(|[x, y, z]| text += &format!("200 {x} {y} {z}\n"));
-        FACES
-            .iter()
-            .for_each(|[a, b, c]| text += &format!("9 3 {a} {b} {c} 1 0.5\n"));
+        POINTS.iter().for_each(|[x, y, z]| text += &format!("200 {x} {y} {z}\n"));
+        FACES.iter().for_each(|[a, b, c]| text += &format!("9 3 {a} {b} {c} 1 0.5\n"));
         out.extend(text.into_bytes());
     }
     out
@@ -135,14 +117,7 @@ const PLAIN: &str = r#""attributes":{"POSITION":0},"indices":1"#;
 
 fn gltf_bytes() -> Vec<u8> {
     let points = POINTS.iter().flatten().flat_map(|x| x.to_le_bytes());
-    points
-        .chain(
-            FACES
-                .iter()
-                .flatten()
-                .flat_map(|&v| (v as u16).to_le_bytes()),
-        )
-        .collect()
+    points.chain(FACES.iter().flatten().flat_map(|&v| (v as u16).to_le_bytes())).collect()
 }
 
 fn glb(json: &str, binary: &[u8]) -> Vec<u8> {
@@ -174,19 +149,12 @@ fn samples() -> Vec<(&'static str, Vec<u8>)> {
         ("ply", ply("binary_little_endian")),
         ("ply", ply("binary_big_endian")),
         ("glb", glb_of(r#"{"mesh":0}"#)),
-        (
-            "gltf",
-            gltf_json(&data, r#"{"mesh":0,"scale":[1,1,1]}"#, PLAIN).into(),
-        ),
+        ("gltf", gltf_json(&data, r#"{"mesh":0,"scale":[1,1,1]}"#, PLAIN).into()),
     ]
 }
 
 fn base64(bytes: &[u8]) -> String {
     const ABC: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let words = bytes
-        .chunks(3)
-        .map(|c| c.iter().fold(0, |w, &b| w << 8 | u32::from(b)));
-    words
-        .flat_map(|w| [18, 12, 6, 0].map(|s| char::from(ABC[(w >> s & 63) as usize])))
-        .collect()
+    let words = bytes.chunks(3).map(|c| c.iter().fold(0, |w, &b| w << 8 | u32::from(b)));
+    words.flat_map(|w| [18, 12, 6, 0].map(|s| char::from(ABC[(w >> s & 63) as usize]))).collect()
 }

@@ -7,10 +7,7 @@ use glam::DVec3;
 pub(super) fn word<'a>(line: &mut &'a [u8]) -> Option<&'a [u8]> {
     let start = line.iter().position(|b| !b.is_ascii_whitespace())?;
     let rest = &line[start..];
-    let end = rest
-        .iter()
-        .position(u8::is_ascii_whitespace)
-        .unwrap_or(rest.len());
+    let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
     *line = &rest[end..];
     Some(&rest[..end])
 }
@@ -48,9 +45,7 @@ pub(super) fn short(line: u64) -> u32 {
 /// A word as it can be shown: at most 40 bytes, no control characters.
 pub(super) fn shown(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(40)]);
-    text.chars()
-        .map(|c| if c.is_control() { '?' } else { c })
-        .collect()
+    text.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
 }
 
 /// The lines of a file with their numbers from 1; ends at `\n`, and `\r` is a blank.

@@ -18,14 +18,8 @@ pub(super) fn encode(mesh: &TriMesh, note: &str) -> Result<Vec<u8>, String> {
         .map(|[x, y, z]| [x, z, 0.0 - y])
         .collect();
     let mut binary = Vec::with_capacity(12 * (points.len() + mesh.faces.len()));
-    points
-        .iter()
-        .flatten()
-        .for_each(|x| binary.extend_from_slice(&x.to_le_bytes()));
-    mesh.faces
-        .iter()
-        .flatten()
-        .for_each(|v| binary.extend_from_slice(&v.to_le_bytes()));
+    points.iter().flatten().for_each(|x| binary.extend_from_slice(&x.to_le_bytes()));
+    mesh.faces.iter().flatten().for_each(|v| binary.extend_from_slice(&v.to_le_bytes()));
     let json = document(&points, mesh.faces.len() * 3, binary.len(), note);
     let json = json.to_string().map_err(|e| e.to_string())?;
     pack(json.into_bytes(), binary)
@@ -65,12 +59,7 @@ fn document(points: &[[f32; 3]], corners: usize, bytes: usize, note: &str) -> Ro
     positions.min = Some(extreme(points, f32::min));
     positions.max = Some(extreme(points, f32::max));
     let positions = root.push(positions);
-    let indices = root.push(accessor(
-        index_view,
-        corners,
-        ComponentType::U32,
-        Type::Scalar,
-    ));
+    let indices = root.push(accessor(index_view, corners, ComponentType::U32, Type::Scalar));
     let mesh = root.push(Mesh {
         primitives: vec![Primitive {
             attributes: [(Valid(Semantic::Positions), positions)].into(),
@@ -86,11 +75,7 @@ fn document(points: &[[f32; 3]], corners: usize, bytes: usize, note: &str) -> Ro
         name: None,
         weights: None,
     });
-    let node = root.push(Node {
-        mesh: Some(mesh),
-        scale: Some([0.001; 3]),
-        ..Node::default()
-    });
+    let node = root.push(Node { mesh: Some(mesh), scale: Some([0.001; 3]), ..Node::default() });
     let scene = root.push(Scene {
         nodes: vec![node],
         name: None,
@@ -120,9 +105,7 @@ fn accessor(view: Index<View>, count: usize, kind: ComponentType, shape: Type) -
 
 fn extreme(points: &[[f32; 3]], pick: fn(f32, f32) -> f32) -> serde_json::Value {
     let first = points.first().copied().unwrap_or_default();
-    let best = points
-        .iter()
-        .fold(first, |m, p| [0, 1, 2].map(|k| pick(m[k], p[k])));
+    let best = points.iter().fold(first, |m, p| [0, 1, 2].map(|k| pick(m[k], p[k])));
     serde_json::Value::from(best.to_vec())
 }
 

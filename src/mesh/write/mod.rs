@@ -41,15 +41,9 @@ enum Target {
 /// that does not survive the rounding; what the system refuses. Nothing is written then.
 pub fn write(path: &Path, mesh: &TriMesh, note: &str, force: bool) -> Result<u64, MeshError> {
     let target = target(path, force)?;
-    let unfaithful = |why: String| MeshError::Unfaithful {
-        path: path.into(),
-        why,
-    };
+    let unfaithful = |why: String| MeshError::Unfaithful { path: path.into(), why };
     if mesh.faces.is_empty() {
-        return Err(MeshError::Empty {
-            path: path.into(),
-            why: "no triangles to write".into(),
-        });
+        return Err(MeshError::Empty { path: path.into(), why: "no triangles to write".into() });
     }
     sound(mesh).map_err(unfaithful)?;
     let bytes = encode(target, mesh, &plain(note)).map_err(unfaithful)?;
@@ -65,11 +59,7 @@ pub fn check_output(path: &Path, force: bool) -> Result<(), MeshError> {
 }
 
 fn target(path: &Path, force: bool) -> Result<Target, MeshError> {
-    let extension = path
-        .extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_ascii_lowercase();
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let target = match extension.as_str() {
         "stl" => Target::Stl,
         "obj" => Target::Obj,
@@ -77,20 +67,13 @@ fn target(path: &Path, force: bool) -> Result<Target, MeshError> {
         "glb" => Target::Glb,
         _ => {
             let known = "writable are stl, obj, ply, glb";
-            return Err(MeshError::Format {
-                path: path.into(),
-                extension,
-                known,
-            });
+            return Err(MeshError::Format { path: path.into(), extension, known });
         }
     };
     if let Ok(m) = fs::metadata(path)
         && !m.is_file()
     {
-        return Err(MeshError::NotAFile {
-            path: path.into(),
-            kind: kind_name(m.file_type()),
-        });
+        return Err(MeshError::NotAFile { path: path.into(), kind: kind_name(m.file_type()) });
     }
     if !force && fs::symlink_metadata(path).is_ok() {
         return Err(MeshError::Exists { path: path.into() });
@@ -98,11 +81,7 @@ fn target(path: &Path, force: bool) -> Result<Target, MeshError> {
     let folder = folder(path);
     match fs::metadata(&folder).and_then(|_| folder.read_dir()) {
         Ok(_) => Ok(target),
-        Err(cause) => Err(MeshError::Io {
-            path: path.into(),
-            doing: "write",
-            cause,
-        }),
+        Err(cause) => Err(MeshError::Io { path: path.into(), doing: "write", cause }),
     }
 }
 
@@ -118,10 +97,7 @@ fn sound(mesh: &TriMesh) -> Result<(), String> {
     for (i, &v) in mesh.faces.iter().flatten().enumerate() {
         let Some(p) = mesh.points.get(v as usize) else {
             let count = mesh.points.len();
-            return Err(format!(
-                "face {} has point {v}, but there are {count} points",
-                i / 3
-            ));
+            return Err(format!("face {} has point {v}, but there are {count} points", i / 3));
         };
         if !p.as_vec3().is_finite() {
             return Err(format!("point {v} is {p}, which f32 cannot hold"));
@@ -132,23 +108,12 @@ fn sound(mesh: &TriMesh) -> Result<(), String> {
 
 /// A note that no header can trip over: printable ASCII without backslash.
 fn plain(note: &str) -> String {
-    note.chars()
-        .map(|c| {
-            if (' '..='~').contains(&c) && c != '\\' {
-                c
-            } else {
-                '?'
-            }
-        })
-        .collect()
+    note.chars().map(|c| if (' '..='~').contains(&c) && c != '\\' { c } else { '?' }).collect()
 }
 
 /// A position as the files hold it: f32, no negative zero.
 fn rounded(mesh: &TriMesh, v: u32) -> [f32; 3] {
-    mesh.points[v as usize]
-        .as_vec3()
-        .to_array()
-        .map(|x| x + 0.0)
+    mesh.points[v as usize].as_vec3().to_array().map(|x| x + 0.0)
 }
 
 fn encode(target: Target, mesh: &TriMesh, note: &str) -> Result<Vec<u8>, String> {
@@ -156,10 +121,7 @@ fn encode(target: Target, mesh: &TriMesh, note: &str) -> Result<Vec<u8>, String>
         Ok(n) if n <= i32::MAX as u32 => Ok(n),
         _ => Err(format!("{n} {what} are more than the format can count")),
     };
-    let (points, faces) = (
-        many(mesh.points.len(), "points")?,
-        many(mesh.faces.len(), "faces")?,
-    );
+    let (points, faces) = (many(mesh.points.len(), "points")?, many(mesh.faces.len(), "faces")?);
     match target {
         Target::Stl => Ok(stl::encode(mesh, faces, note)),
         Target::Obj => Ok(obj::encode(mesh, note)),
@@ -205,9 +167,7 @@ fn differs<T: PartialEq + Display>(what: &str, back: T, mesh: T) -> Result<(), S
     if back == mesh {
         return Ok(());
     }
-    Err(format!(
-        "read back, {what}: {back}, but the mesh has {mesh}"
-    ))
+    Err(format!("read back, {what}: {back}, but the mesh has {mesh}"))
 }
 
 /// Whether welding the soup gives the mesh: each of its points one point, each face a face.
@@ -216,9 +176,7 @@ fn same_welded(soup: &TriMesh, mesh: &TriMesh) -> Result<(), String> {
     let (back, counts) = welded(soup);
     if counts.collapsed > 0 {
         let n = counts.collapsed;
-        return Err(format!(
-            "{n} faces lose a corner when positions are rounded to f32"
-        ));
+        return Err(format!("{n} faces lose a corner when positions are rounded to f32"));
     }
     let mut to_mesh = vec![FREE; back.points.len()];
     let mut to_back = vec![FREE; mesh.points.len()];
@@ -227,9 +185,7 @@ fn same_welded(soup: &TriMesh, mesh: &TriMesh) -> Result<(), String> {
         let (there, here) = (&mut to_back[*m as usize], &mut to_mesh[*b as usize]);
         if *here != FREE && *here != *m {
             let at = back.points[*b as usize];
-            return Err(format!(
-                "points {here} and {m} of the mesh coincide in f32, at {at}"
-            ));
+            return Err(format!("points {here} and {m} of the mesh coincide in f32, at {at}"));
         }
         if *there != FREE && *there != *b {
             return Err(format!("point {m} of the mesh comes back as two"));
@@ -241,11 +197,7 @@ fn same_welded(soup: &TriMesh, mesh: &TriMesh) -> Result<(), String> {
 
 /// Writes beside the place and renames into it, so that no half file is ever there.
 fn place(path: &Path, bytes: &[u8], force: bool) -> Result<(), MeshError> {
-    let failed = |cause| MeshError::Io {
-        path: path.into(),
-        doing: "write",
-        cause,
-    };
+    let failed = |cause| MeshError::Io { path: path.into(), doing: "write", cause };
     let mut beside = tempfile::Builder::new();
     beside.prefix(".fieldgraft-").suffix(".part");
     // Else the file would stay readable by its owner only, as temporary files are.
@@ -253,11 +205,7 @@ fn place(path: &Path, bytes: &[u8], force: bool) -> Result<(), MeshError> {
     beside.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = beside.tempfile_in(folder(path)).map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
-    let kept = if force {
-        file.persist(path)
-    } else {
-        file.persist_noclobber(path)
-    };
+    let kept = if force { file.persist(path) } else { file.persist_noclobber(path) };
     match kept {
         Ok(_) => Ok(()),
         Err(e) if e.error.kind() == std::io::ErrorKind::AlreadyExists => {

@@ -15,8 +15,7 @@ pub(super) fn encode(mesh: &TriMesh, points: u32, faces: u32, note: &str) -> Vec
     }
     for face in &mesh.faces {
         out.push(3);
-        face.iter()
-            .for_each(|v| out.extend_from_slice(&v.to_le_bytes()));
+        face.iter().for_each(|v| out.extend_from_slice(&v.to_le_bytes()));
     }
     out
 }

@@ -35,11 +35,7 @@ fn round_trip(mesh: &TriMesh, extension: &str) -> Loaded {
     let path = folder.path().join("mesh").with_extension(extension);
     let bytes = write(&path, mesh, "recipe=1f3a", false).unwrap();
     assert_eq!(bytes, fs::metadata(&path).unwrap().len());
-    assert_eq!(
-        fs::read_dir(folder.path()).unwrap().count(),
-        1,
-        "something was left behind"
-    );
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "something was left behind");
     read(&path, Assume::default()).unwrap()
 }
 
@@ -95,12 +91,7 @@ fn negative_zero_is_not_written() {
         assert!(facet[..48].chunks(4).all(|x| x != minus));
     }
     let ply = encode(Target::Ply, &mesh, "").unwrap();
-    assert!(
-        ply[ply.len() - 4 * 13 - 48..]
-            .chunks(4)
-            .take(12)
-            .all(|x| x != minus)
-    );
+    assert!(ply[ply.len() - 4 * 13 - 48..].chunks(4).take(12).all(|x| x != minus));
     let obj = String::from_utf8(encode(Target::Obj, &mesh, "").unwrap()).unwrap();
     assert!(!obj.contains("-0\n") && !obj.contains("-0 "), "{obj}");
 }
@@ -113,17 +104,10 @@ fn a_glb_says_what_the_standard_asks_for() {
     let json: serde_json::Value = serde_json::from_slice(&bytes[20..20 + length]).unwrap();
     assert_eq!(json["asset"]["version"], "2.0");
     assert_eq!(json["asset"]["generator"], "fieldgraft recipe=1f3a");
-    assert_eq!(
-        json["nodes"][0]["scale"],
-        serde_json::json!([0.001, 0.001, 0.001])
-    );
+    assert_eq!(json["nodes"][0]["scale"], serde_json::json!([0.001, 0.001, 0.001]));
     assert_eq!(json["accessors"][1]["componentType"], 5125);
-    let targets: Vec<_> = json["bufferViews"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|v| &v["target"])
-        .collect();
+    let targets: Vec<_> =
+        json["bufferViews"].as_array().unwrap().iter().map(|v| &v["target"]).collect();
     assert_eq!(targets, [34962, 34963]);
     let bounds = mesh.bounds();
     let position = &json["accessors"][0];
@@ -131,12 +115,8 @@ fn a_glb_says_what_the_standard_asks_for() {
         ("min", [bounds.min.x, bounds.min.z, -bounds.max.y]),
         ("max", [bounds.max.x, bounds.max.z, -bounds.min.y]),
     ] {
-        let got: Vec<f64> = position[key]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|x| x.as_f64().unwrap())
-            .collect();
+        let got: Vec<f64> =
+            position[key].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
         assert_eq!(got, want, "{key}");
     }
 }
@@ -172,9 +152,7 @@ fn others_may_read_the_file_as_usual() {
 fn what_cannot_be_written_is_refused_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let try_write = |name: &str, mesh: &TriMesh| {
-        let text = write(&folder.path().join(name), mesh, "", true)
-            .unwrap_err()
-            .to_string();
+        let text = write(&folder.path().join(name), mesh, "", true).unwrap_err().to_string();
         assert!(text.contains(name), "{text}");
         text
     };
@@ -203,10 +181,7 @@ fn an_stl_that_would_not_weld_back_is_not_written() {
     let mut twice = block();
     twice.append(&block());
     let text = write(&path, &twice, "", false).unwrap_err().to_string();
-    assert!(
-        text.contains("points 0 and 8 of the mesh coincide"),
-        "{text}"
-    );
+    assert!(text.contains("points 0 and 8 of the mesh coincide"), "{text}");
     // A point that f32 cannot tell from its neighbour.
     let mut thin = block();
     thin.points[1] = thin.points[0] + DVec3::X * 1e-9;

@@ -14,19 +14,14 @@ fn field(mesh: &TriMesh) -> (MeshField, MeshReport) {
 }
 
 fn thickened(mm: f64, which: Which) -> MeshOptions {
-    MeshOptions {
-        thicken: Some(Thicken { mm, which }),
-        ..Default::default()
-    }
+    MeshOptions { thicken: Some(Thicken { mm, which }), ..Default::default() }
 }
 
 /// Evenly spread points of a box, the same every time.
 fn spread(half: f64, n: u32) -> Vec<DVec3> {
     // additive recurrence by the plastic number
     let step = dvec3(0.819_172_513_4, 0.671_043_606_7, 0.549_700_477_9);
-    (1..=n)
-        .map(|i| ((step * f64::from(i)).fract() * 2.0 - 1.0) * half)
-        .collect()
+    (1..=n).map(|i| ((step * f64::from(i)).fract() * 2.0 - 1.0) * half).collect()
 }
 
 fn v(x: f64) -> DVec3 {
@@ -41,26 +36,9 @@ fn zoo() -> Vec<(MeshField, f64)> {
         (field(&ball(10.0, 0.2, 3)).0, 14.0),
         (field(&open).0, 14.0),
         (field(&dirty).0, 45.0),
-        (
-            MeshField::new(&dirty, &thickened(2.0, Which::Open), &Quiet)
-                .unwrap()
-                .0,
-            45.0,
-        ),
-        (
-            MeshField::new(&dirty, &thickened(1.0, Which::All), &Quiet)
-                .unwrap()
-                .0,
-            45.0,
-        ),
-        (
-            field(&together(&[
-                open_block(v(-9.0), v(3.0)),
-                block(v(-3.0), v(10.0)),
-            ]))
-            .0,
-            14.0,
-        ),
+        (MeshField::new(&dirty, &thickened(2.0, Which::Open), &Quiet).unwrap().0, 45.0),
+        (MeshField::new(&dirty, &thickened(1.0, Which::All), &Quiet).unwrap().0, 45.0),
+        (field(&together(&[open_block(v(-9.0), v(3.0)), block(v(-3.0), v(10.0))])).0, 14.0),
     ]
 }
 
@@ -71,10 +49,7 @@ fn a_box_has_its_exact_distance() {
     for p in spread(9.0, 2000) {
         assert!((f.value(p) - block_distance(min, max, p)).abs() < 1e-12);
     }
-    assert_eq!(
-        (report.shells, report.open_shells, report.contact_faces),
-        (1, 0, 0)
-    );
+    assert_eq!((report.shells, report.open_shells, report.contact_faces), (1, 0, 0));
     assert_eq!(report.summary(), Vec::<String>::new());
     assert_eq!(f.support(), Aabb::new(min, max));
 }
@@ -179,10 +154,9 @@ fn a_solid_in_a_cavity_stays() {
 fn shells_that_are_inside_out_are_turned_one_by_one() {
     let (a, b) = (block(v(-10.0), v(-2.0)), block(v(2.0), v(10.0)));
     let right = field(&together(&[a.clone(), b.clone()])).0;
-    for (mesh, turned) in [
-        (together(&[a.clone(), flipped(b.clone())]), 1),
-        (together(&[flipped(a), flipped(b)]), 2),
-    ] {
+    for (mesh, turned) in
+        [(together(&[a.clone(), flipped(b.clone())]), 1), (together(&[flipped(a), flipped(b)]), 2)]
+    {
         let (f, report) = field(&mesh);
         assert_eq!(report.flipped_shells, turned);
         for p in spread(14.0, 200) {
@@ -210,10 +184,7 @@ fn a_mesh_given_in_both_directions_is_the_solid() {
     let cube = block(v(-5.0), v(5.0));
     let (f, report) = field(&together(&[cube.clone(), flipped(cube)]));
     assert!((f.value(v(0.0)) + 5.0).abs() < 1e-12);
-    assert_eq!(
-        (report.duplicate_faces, report.double_area_share),
-        (12, 0.0)
-    );
+    assert_eq!((report.duplicate_faces, report.double_area_share), (12, 0.0));
 }
 
 #[test]
@@ -243,13 +214,7 @@ fn a_box_without_its_lid_is_still_full() {
     let (f, report) = field(&open_block(v(-10.0), v(10.0)));
     assert_eq!((report.open_shells, report.rim_length.round()), (1, 80.0));
     // the winding number falls to one half at the plane of the missing side
-    for (z, inside) in [
-        (-9.0, true),
-        (0.0, true),
-        (9.5, true),
-        (10.5, false),
-        (-10.5, false),
-    ] {
+    for (z, inside) in [(-9.0, true), (0.0, true), (9.5, true), (10.5, false), (-10.5, false)] {
         assert_eq!(f.value(dvec3(0.0, 0.0, z)) < 0.0, inside, "z = {z}");
     }
     assert!((f.value(dvec3(0.0, 0.0, -7.0)) + 3.0).abs() < 1e-12);
@@ -266,21 +231,14 @@ fn sheets_need_a_thickness() {
         assert!(matches!(error, MeshFieldError::NoInside { .. }), "{error}");
         assert!(error.to_string().contains("thicken"));
         let (f, report) = MeshField::new(mesh, &thickened(4.0, Which::Open), &Quiet).unwrap();
-        for (p, d) in [
-            (v(0.0), -2.0),
-            (dvec3(0.0, 0.0, 5.0), 3.0),
-            (dvec3(14.0, 0.0, 3.0), 3.0),
-        ] {
+        for (p, d) in [(v(0.0), -2.0), (dvec3(0.0, 0.0, 5.0), 3.0), (dvec3(14.0, 0.0, 3.0), 3.0)] {
             assert!((f.value(p) - d).abs() < 1e-12);
         }
         assert_eq!((report.thickened_faces, report.solid), (2, false));
         assert_eq!(f.support(), flat.bounds().grow(2.0));
     }
     assert_eq!(
-        MeshField::new(&double, &thickened(1.0, Which::Open), &Quiet)
-            .unwrap()
-            .1
-            .double_area_share,
+        MeshField::new(&double, &thickened(1.0, Which::Open), &Quiet).unwrap().1.double_area_share,
         1.0
     );
 }
@@ -288,12 +246,8 @@ fn sheets_need_a_thickness() {
 #[test]
 fn thickening_leaves_closed_shells_alone_unless_told() {
     let mesh = together(&[block(v(-5.0), v(5.0)), sheet(3.0, 20.0)]);
-    let open = MeshField::new(&mesh, &thickened(2.0, Which::Open), &Quiet)
-        .unwrap()
-        .0;
-    let all = MeshField::new(&mesh, &thickened(2.0, Which::All), &Quiet)
-        .unwrap()
-        .0;
+    let open = MeshField::new(&mesh, &thickened(2.0, Which::Open), &Quiet).unwrap().0;
+    let all = MeshField::new(&mesh, &thickened(2.0, Which::All), &Quiet).unwrap().0;
     assert!((open.value(dvec3(0.0, 0.0, 8.0)) - 3.0).abs() < 1e-12);
     assert!((all.value(dvec3(0.0, 0.0, 8.0)) - 2.0).abs() < 1e-12);
     assert!((open.value(dvec3(0.0, 0.0, 20.0)) + 1.0).abs() < 1e-12);
@@ -303,18 +257,9 @@ fn thickening_leaves_closed_shells_alone_unless_told() {
 #[test]
 fn without_a_sign_everything_is_a_sheet() {
     let mesh = block(v(-5.0), v(5.0));
-    let unsigned = MeshOptions {
-        sign: Sign::Unsigned,
-        ..Default::default()
-    };
-    assert_eq!(
-        MeshField::new(&mesh, &unsigned, &Quiet).unwrap_err(),
-        MeshFieldError::Unsigned
-    );
-    let options = MeshOptions {
-        sign: Sign::Unsigned,
-        ..thickened(2.0, Which::Open)
-    };
+    let unsigned = MeshOptions { sign: Sign::Unsigned, ..Default::default() };
+    assert_eq!(MeshField::new(&mesh, &unsigned, &Quiet).unwrap_err(), MeshFieldError::Unsigned);
+    let options = MeshOptions { sign: Sign::Unsigned, ..thickened(2.0, Which::Open) };
     let (f, _) = MeshField::new(&mesh, &options, &Quiet).unwrap();
     assert!((f.value(v(0.0)) - 4.0).abs() < 1e-12);
     assert!((f.value(dvec3(5.0, 0.0, 0.0)) + 1.0).abs() < 1e-12);
@@ -326,24 +271,11 @@ fn wrong_input_is_an_error_that_names_the_place() {
     assert_eq!(new(&TriMesh::default()), MeshFieldError::Empty { faces: 0 });
     let mut mesh = block(v(0.0), v(1.0));
     mesh.faces[7][1] = 99;
-    assert_eq!(
-        new(&mesh),
-        MeshFieldError::Corner {
-            face: 7,
-            corner: 99,
-            points: 8
-        }
-    );
+    assert_eq!(new(&mesh), MeshFieldError::Corner { face: 7, corner: 99, points: 8 });
     mesh = block(v(0.0), v(1.0));
     mesh.points[3].y = f64::NAN;
-    assert!(matches!(
-        new(&mesh),
-        MeshFieldError::Coordinate { corner: 3, .. }
-    ));
-    let flat = TriMesh {
-        points: vec![v(0.0), v(1.0), v(2.0)],
-        faces: vec![[0, 1, 2], [0, 0, 1]],
-    };
+    assert!(matches!(new(&mesh), MeshFieldError::Coordinate { corner: 3, .. }));
+    let flat = TriMesh { points: vec![v(0.0), v(1.0), v(2.0)], faces: vec![[0, 1, 2], [0, 0, 1]] };
     assert_eq!(new(&flat), MeshFieldError::Empty { faces: 2 });
     let wrong = MeshField::new(&mesh, &thickened(-1.0, Which::All), &Quiet).unwrap_err();
     assert_eq!(wrong, MeshFieldError::Thickness(-1.0));
@@ -359,6 +291,42 @@ fn a_cancelled_job_stops() {
     }
     let stopped = MeshField::new(&block(v(0.0), v(1.0)), &MeshOptions::default(), &Stop);
     assert_eq!(stopped.unwrap_err(), MeshFieldError::Cancelled(Cancelled));
+}
+
+#[test]
+fn an_open_sheet_does_not_hollow_a_solid() {
+    let solid = block(v(-10.0), v(10.0));
+    for part in [sheet(9.0, 0.0), flipped(sheet(9.0, 0.0)), sheet(40.0, 0.0)] {
+        let (f, _) = field(&together(&[solid.clone(), part]));
+        for p in spread(9.0, 300) {
+            let depth = 10.0 - p.abs().max_element();
+            assert!((f.value(p) + depth).abs() < 0.02, "{p}: {} {depth}", f.value(p));
+        }
+    }
+}
+
+#[test]
+fn the_same_field_on_any_number_of_threads() {
+    let values = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let (f, report) = pool.install(|| field(&dirty()));
+        let bits: Vec<u64> = spread(40.0, 500).iter().map(|&p| f.value(p).to_bits()).collect();
+        (bits, report)
+    };
+    assert_eq!(values(1), values(2));
+}
+
+#[test]
+fn triangles_strewn_at_random_take_no_forever() {
+    let at = spread(10.0, 1500);
+    let soup =
+        TriMesh { points: at, faces: (0..500).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect() };
+    let (f, report) = MeshField::new(&soup, &thickened(0.5, Which::Open), &Quiet).unwrap();
+    assert_eq!(report.shells, 500);
+    for i in (0..500).filter(|&i| soup.area_vector(i).length() > 1.0) {
+        let [a, b, c] = soup.corners(i);
+        assert!(f.value((a + b + c) / 3.0) <= -0.25 + 1e-9);
+    }
 }
 
 #[test]

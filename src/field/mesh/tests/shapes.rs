@@ -8,30 +8,14 @@ use std::f64::consts::TAU;
 pub fn block(min: DVec3, max: DVec3) -> TriMesh {
     let at = |i: u32| {
         let pick = |axis: usize| {
-            if i >> axis & 1 == 0 {
-                min[axis]
-            } else {
-                max[axis]
-            }
+            if i >> axis & 1 == 0 { min[axis] } else { max[axis] }
         };
         dvec3(pick(0), pick(1), pick(2))
     };
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let faces = quads
-        .iter()
-        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-        .collect();
-    TriMesh {
-        points: (0..8).map(at).collect(),
-        faces,
-    }
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    TriMesh { points: (0..8).map(at).collect(), faces }
 }
 
 /// Signed distance to a box.
@@ -66,11 +50,7 @@ pub fn ball(radius: f64, bump: f64, n: u32) -> TriMesh {
         .map(|i| {
             let sign = |k: usize| if i >> k & 1 == 0 { 1.0 } else { -1.0 };
             let t = [0, 1, 2].map(|k| axes[k] * sign(k));
-            if sign(0) * sign(1) * sign(2) > 0.0 {
-                t
-            } else {
-                [t[0], t[2], t[1]]
-            }
+            if sign(0) * sign(1) * sign(2) > 0.0 { t } else { [t[0], t[2], t[1]] }
         })
         .collect();
     for _ in 0..n {
@@ -97,10 +77,7 @@ pub fn ball(radius: f64, bump: f64, n: u32) -> TriMesh {
 pub fn sheet(half: f64, z: f64) -> TriMesh {
     let at = |x: f64, y: f64| dvec3(x * half, y * half, z);
     let points = vec![at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)];
-    TriMesh {
-        points,
-        faces: vec![[0, 1, 2], [0, 2, 3]],
-    }
+    TriMesh { points, faces: vec![[0, 1, 2], [0, 2, 3]] }
 }
 
 /// Several meshes in one.

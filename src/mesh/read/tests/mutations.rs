@@ -72,11 +72,7 @@ fn twenty_thousand_broken_files_never_panic() {
                 Ok(loaded) => {
                     read += 1;
                     assert!(loaded.mesh.faces.iter().flatten().all(|&v| {
-                        loaded
-                            .mesh
-                            .points
-                            .get(v as usize)
-                            .is_some_and(|p| p.is_finite())
+                        loaded.mesh.points.get(v as usize).is_some_and(|p| p.is_finite())
                     }));
                     assert!(!loaded.found.summary().contains("nan"));
                 }
@@ -87,8 +83,5 @@ fn twenty_thousand_broken_files_never_panic() {
             }
         }
     }
-    assert!(
-        read > 2000 && refused > 2000,
-        "{read} read, {refused} refused"
-    );
+    assert!(read > 2000 && refused > 2000, "{read} read, {refused} refused");
 }
