@@ -70,6 +70,10 @@ pub struct Part {
     /// `add` (the default), `cut` or `blend`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub op: Op,
+    /// Whether the part is written as a bare open sheet, its middle surface, when the solid is written
+    /// as raw shells (`convert --shells`); boxes and prisms only. Says nothing of the solid itself.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub sheet: bool,
     /// Width of the fillet for `op = "blend"`, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blend: Option<f64>,

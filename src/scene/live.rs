@@ -131,6 +131,7 @@ pub(super) fn exact(
     match placed.body {
         Body::Solid(parts) => {
             let at = join("shapes", &placed.name);
+            let parts: Vec<_> = parts.into_iter().map(|p| p.part).collect();
             let solid = Assembly::new(&parts).map_err(|e| Problem::new(at, e.to_string()))?;
             Ok((Arc::new(solid), Vec::new()))
         }
