@@ -6,5 +6,7 @@ mod chairs;
 mod cli;
 /// A module imports from lower floors only.
 mod floors;
+/// Morphs of our own chairs with their features.
+mod morph;
 /// Running the command and looking at what it did.
 mod util;

@@ -3,7 +3,7 @@
 
 use super::hybrid::{Hybrid, Looked};
 use super::inner::Local;
-use super::plan::SpaceTime;
+use super::plan::{Form, SpaceTime};
 use super::space_time::{Bounded, height_for_volume};
 use crate::job::{self, Cancelled, Job};
 use crate::num::Aabb;
@@ -23,6 +23,9 @@ const LEVEL_CAP: f64 = 12.0;
 /// Largest height of the space-time blend in units of the reach: near t = 0 and 1 the blend is weak,
 /// and the height that would keep the volume grows without bound.
 const HEIGHT_CAP: f64 = 4.0;
+/// Least height of the half-cylinders' blend in units of the reach: half way their base is zero all
+/// over the first shape, and only the blend says that this is inside.
+const CYLINDERS_FLOOR: f64 = 0.02;
 
 /// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes.
 fn local(g: &[f64], lam: &[f64]) -> Local {
@@ -95,12 +98,14 @@ pub(super) fn bounded(
 ) -> Result<Bounded, Cancelled> {
     let k = h.shapes.len();
     let looked = look(h, &lattice(domain), job)?;
+    // half-cylinders lie in time too: the one that has ended still bounds the other
+    let counts = |l: f64| l > 0.0 || want.form == Form::HalfCylinders;
     let reach = looked
         .g
         .chunks_exact(k)
         .zip(looked.lam.chunks_exact(k))
-        .filter(|(g, l)| g.iter().zip(*l).any(|(g, l)| *l > 0.0 && *g < 0.0))
-        .map(|(g, l)| (0..k).filter(|&j| l[j] > 0.0).map(|j| g[j]).fold(0.0, f64::max))
+        .filter(|(g, l)| g.iter().zip(*l).any(|(g, l)| counts(*l) && *g < 0.0))
+        .map(|(g, l)| (0..k).filter(|&j| counts(l[j])).map(|j| g[j]).fold(0.0, f64::max))
         .fold(1.0, f64::max);
     let mut b = Bounded {
         form: want.form,
@@ -118,7 +123,11 @@ pub(super) fn bounded(
                 .flat_map(|(g, l)| g.iter().zip(l).map(|(g, l)| if *g < 0.0 { *l } else { 0.0 }))
                 .sum();
             let samples: Vec<_> = rows.map(|(g, l)| b.parts(g, l)).collect();
-            height_for_volume(&samples, wanted, HEIGHT_CAP * reach)
+            let height = height_for_volume(&samples, wanted, HEIGHT_CAP * reach);
+            match want.form {
+                Form::HalfCylinders => height.max(CYLINDERS_FLOOR * reach),
+                Form::L | Form::S => height,
+            }
         }
     };
     Ok(b)
