@@ -46,8 +46,8 @@ pub struct FeatureMorph {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deform: Option<TimeFn>,
     /// Thickens the feature (thins it when negative), mm; paper 001, eq. 6.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub offset: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<f64>,
 }
 
 /// An element: exactly one shape, perhaps twisted, tapered or bent along its axis.
@@ -194,7 +194,7 @@ impl FeatureEntry {
             }
             element.validate(&at)?;
         }
-        let offset = self.morph.as_ref().map_or(0.0, |m| m.offset);
+        let offset = self.morph.as_ref().and_then(|m| m.offset).unwrap_or(0.0);
         primitive::finite(&[offset], &format!("{at}.morph.offset"))
     }
 }

@@ -36,7 +36,8 @@ impl Rows<'_> {
             Some(row) => Course::Fixed(row),
             None => paired(self.rest(), own),
         };
-        let offset = f.morph.as_ref().map_or(0.0, |m| m.offset);
+        let own = f.morph.as_ref().and_then(|m| m.offset);
+        let offset = own.or(self.entry.offset).unwrap_or(0.0);
         Feature { name: f.name.clone(), elements, deform: morph.clone(), morph, offset }
     }
 
