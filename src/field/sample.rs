@@ -18,7 +18,7 @@ pub(crate) mod shapes;
 #[cfg(test)]
 mod tests;
 
-pub use undecided::{Undecided, undecided};
+pub use undecided::{Undecided, undecided, undecided_at_most};
 
 use super::Field;
 use crate::grid::{BRICK, Brick, Bricks, Lattice};

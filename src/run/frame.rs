@@ -3,7 +3,7 @@
 use super::report::FrameReport;
 use crate::check::{self, Options, drop_crumbs, inspect, solid_pieces};
 use crate::field::Shared;
-use crate::field::sample::{sample, undecided};
+use crate::field::sample::{sample, undecided, undecided_at_most};
 use crate::grid::Lattice;
 use crate::iso::{Mesher, extract, extract_sharp};
 use crate::job::{Cancelled, Job};
@@ -90,10 +90,13 @@ pub fn make(
         MesherEntry::Sharp => extract_sharp(&sampling.bricks, &*field, job),
         MesherEntry::Preview => extract(&sampling.bricks, Mesher::SurfaceNets, job),
     })?;
-    let levels = if work.verify { DECIDE_LEVELS } else { 0 };
-    let search = || undecided(&*field, &sampling, levels, job);
-    let found = timed(&mut r.seconds.undecided, search)?;
-    r.undecided_cells = Some(found.left + found.missed);
+    r.undecided_cells = Some(if work.verify {
+        let search = || undecided(&*field, &sampling, DECIDE_LEVELS, job);
+        let found = timed(&mut r.seconds.undecided, search)?;
+        found.left + found.missed
+    } else {
+        timed(&mut r.seconds.undecided, || undecided_at_most(&sampling))
+    });
     drop(sampling);
     if mesh.faces.is_empty() {
         let why = "nothing is inside: the result is empty at this time; try another method, inner \

@@ -50,7 +50,8 @@ pub struct FrameReport {
     pub evaluated: u64,
     /// Whether the shape reached the border of the lattice and was closed there.
     pub border_clipped: bool,
-    /// Cells that look empty or full but may hold something smaller; `None` when not counted.
+    /// Cells that look empty or full but may hold something smaller: at most so many, or with
+    /// `--verify` so many left after a subdivision.
     pub undecided_cells: Option<u64>,
     /// Solids, crumbs left out.
     pub pieces: Option<u64>,

@@ -169,6 +169,10 @@ fn undecided_finds_a_ball_between_samples() {
     }
     let counted = undecided(&both, &s, 0, &Quiet).unwrap();
     assert!(counted.undecided > 0 && counted.left == counted.undecided);
+    assert!(
+        super::undecided_at_most(&s) >= counted.undecided
+            && super::undecided_at_most(&s) <= s.stats.evaluated
+    );
     let u = undecided(&both, &s, 6, &Quiet).unwrap();
     assert_eq!((u.undecided, u.missed), (counted.undecided, 1));
     assert_eq!(u.undecided, u.decided + u.missed + u.left);

@@ -3,7 +3,7 @@
 use super::prune::Pruner;
 use super::{Sampling, side, stored};
 use crate::field::Field;
-use crate::grid::{BRICK, Brick, Lattice};
+use crate::grid::{BRICK, Brick, Bricks, Lattice};
 use crate::job::{Cancelled, Job, check};
 use crate::num::Aabb;
 use glam::DVec3;
@@ -25,6 +25,41 @@ pub struct Undecided {
     pub left: u64,
     /// A point of the other sign, the first in order.
     pub example: Option<DVec3>,
+}
+
+/// At most how many cells are undecided, counted from the samples alone: all cells of one sign in
+/// the cubes of 4³ that a bound could not exclude. [`undecided`] asks the bound of each cell, and
+/// takes several times what sampling takes.
+pub fn undecided_at_most(of: &Sampling) -> u64 {
+    let bricks = &of.bricks;
+    let count = |i: usize| match bricks.bricks.get(i) {
+        Some(Brick::Band(_)) => open_cells(bricks, bricks.place(i).map(|b| i64::from(b * BRICK))),
+        _ => 0,
+    };
+    (0..bricks.bricks.len()).into_par_iter().map(count).sum()
+}
+
+/// Cells of one sign in the brick that starts at sample `at`, in cubes that hold finite samples.
+fn open_cells(bricks: &Bricks<f32>, at: [i64; 3]) -> u64 {
+    let mut s = [[[0f32; 9]; 9]; 9];
+    for (k, plane) in s.iter_mut().enumerate() {
+        for (j, row) in plane.iter_mut().enumerate() {
+            let from = [at[0], at[1] + j as i64, at[2] + k as i64];
+            bricks.row(from, f32::NEG_INFINITY, f32::INFINITY, row);
+        }
+    }
+    let mut open = 0;
+    for k in 0..8 {
+        for j in 0..8 {
+            for i in 0..8 {
+                let corners =
+                    (0..8).filter(|c| s[k + (c >> 2)][j + (c >> 1 & 1)][i + (c & 1)] < 0.0);
+                let held = s[k][j][i].is_finite();
+                open += u64::from(held && matches!(corners.count(), 0 | 8));
+            }
+        }
+    }
+    open
 }
 
 /// Counts undecided cells, and subdivides each of them `floor_levels` times to decide it. With

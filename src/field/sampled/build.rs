@@ -38,7 +38,6 @@ impl Sampled {
         let origin = domain.centre() - cells.as_dvec3() * (step * 0.5);
         let grid = Grid { origin, step };
         let leaves = grid.leaves(field, roots, top, job)?;
-        let data = grid.samples(field, &leaves, job)?;
         let table_size = cells / CELLS;
         let table = fill_table(&leaves, table_size);
         let mut s = Self {
@@ -49,15 +48,58 @@ impl Sampled {
             table,
             table_size,
             leaves,
-            data,
+            data: Vec::new(),
             ranges: Ranges::default(),
             support,
             volume: 0.0,
         };
+        s.data = grid.cores(field, &s.leaves, job)?;
+        s.fill_far_faces(&grid, field, job)?;
         s.join_levels(top);
         s.ranges = Ranges::new(&s);
         s.volume = s.count_volume();
         Ok(s)
+    }
+
+    /// Fills the samples of the far faces: from the neighbour that has them in its core, else from
+    /// the field.
+    fn fill_far_faces(
+        &mut self,
+        grid: &Grid,
+        field: &dyn Field,
+        job: &dyn Job,
+    ) -> Result<(), Cancelled> {
+        let far = &near_order()[CORE..];
+        let fill = |leaf: usize| {
+            job::check(job)?;
+            let Leaf { corner, level } = self.leaves[leaf];
+            let (mut found, mut asked, mut at) = (Vec::new(), Vec::new(), Vec::new());
+            for &n in far {
+                let cell = corner + place(n) * (1 << level);
+                let other = self.leaf_at(cell);
+                let from = cell - self.leaves[other].corner;
+                let outside = (cell.cmpge(self.table_size * CELLS)).any();
+                if !outside && self.leaves[other].level == level {
+                    let o = from.map(|x| x >> level).as_usizevec3();
+                    found.push((n, self.data[other * LEAF + o.x + SIDE * (o.y + SIDE * o.z)]));
+                } else {
+                    asked.push(n);
+                    at.push(grid.point(cell));
+                }
+            }
+            let mut out = vec![0.0; at.len()];
+            field.values(&at, &mut out);
+            found.extend(asked.into_iter().zip(out).map(|(n, f)| (n, f as f32)));
+            Ok(found)
+        };
+        let faces: Vec<Vec<(usize, f32)>> =
+            (0..self.leaves.len()).into_par_iter().map(fill).collect::<Result<_, Cancelled>>()?;
+        for (leaf, faces) in faces.into_iter().enumerate() {
+            for (n, f) in faces {
+                self.data[leaf * LEAF + n] = f;
+            }
+        }
+        Ok(())
     }
 
     /// Gives fine leaves the values of coarser neighbours on common faces, coarsest first.
@@ -90,8 +132,7 @@ impl Sampled {
             return out;
         }
         for n in 0..LEAF {
-            let ijk =
-                IVec3::new((n % SIDE) as i32, (n / SIDE % SIDE) as i32, (n / (SIDE * SIDE)) as i32);
+            let ijk = place(n);
             let on_face = ijk.cmpeq(IVec3::ZERO) | ijk.cmpeq(IVec3::splat(CELLS));
             if !on_face.any() {
                 continue;
@@ -201,29 +242,25 @@ impl Grid {
         f.lo < keep && f.hi > -keep
     }
 
-    fn samples(
+    /// The 8³ near samples of every leaf; its far faces stay zero.
+    fn cores(
         &self,
         field: &dyn Field,
         leaves: &[Leaf],
         job: &dyn Job,
     ) -> Result<Vec<f32>, Cancelled> {
-        let order = near_order();
+        let order = &near_order()[..CORE];
         let mut data = vec![0f32; leaves.len() * LEAF];
         let finished = AtomicUsize::new(0);
         data.par_chunks_mut(LEAF).zip(leaves).try_for_each_init(
-            || (vec![DVec3::ZERO; LEAF], vec![0.0; LEAF]),
+            || (vec![DVec3::ZERO; CORE], vec![0.0; CORE]),
             |(at, out), (samples, leaf)| {
                 job::check(job)?;
-                for (p, &n) in at.iter_mut().zip(&order) {
-                    let ijk = IVec3::new(
-                        (n % SIDE) as i32,
-                        (n / SIDE % SIDE) as i32,
-                        (n / (SIDE * SIDE)) as i32,
-                    );
-                    *p = self.point(leaf.corner + ijk * (1 << leaf.level));
+                for (p, &n) in at.iter_mut().zip(order) {
+                    *p = self.point(leaf.corner + place(n) * (1 << leaf.level));
                 }
                 field.values(at, out);
-                for (&f, &n) in out.iter().zip(&order) {
+                for (&f, &n) in out.iter().zip(order) {
                     samples[n] = f as f32;
                 }
                 let n = finished.fetch_add(1, Ordering::Relaxed) + 1;
@@ -235,6 +272,14 @@ impl Grid {
         )?;
         Ok(data)
     }
+}
+
+/// Samples of a leaf without its far faces.
+const CORE: usize = (SIDE - 1) * (SIDE - 1) * (SIDE - 1);
+
+/// Sample `n` of a leaf as (i, j, k).
+fn place(n: usize) -> IVec3 {
+    IVec3::new((n % SIDE) as i32, (n / SIDE % SIDE) as i32, (n / (SIDE * SIDE)) as i32)
 }
 
 /// Sample indices so that runs of 8, 64 and 512 are cubes; the far faces come last.
