@@ -4,6 +4,7 @@
 mod aabb;
 pub mod expr;
 mod interval;
+pub mod lsq;
 pub mod near;
 
 pub use aabb::Aabb;

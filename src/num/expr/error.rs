@@ -22,12 +22,12 @@ pub enum ExprError {
         /// The variables, such as `v = 0, t = 0.5`.
         place: String,
     },
-    /// Not one value for every variable.
-    #[error("got {got} values, the expression has {expected} variables")]
+    /// Not one value for every variable, or not one place for every result.
+    #[error("got {got} values, expected {expected}")]
     Values {
-        /// Number of values.
+        /// Number given.
         got: usize,
-        /// Number of variables.
+        /// Number of variables, or of results.
         expected: usize,
     },
     /// An expression or derivative grows beyond all use.

@@ -117,6 +117,14 @@ pub fn run(nodes: &[Node], values: &[f64], slots: &mut [f64]) -> bool {
     finite
 }
 
+/// Lends `n` numbers to work in, without allocating for expressions of usual size.
+pub fn with_slots<R>(n: usize, work: impl FnOnce(&mut [f64]) -> R) -> R {
+    match [0.0; 64].get_mut(..n) {
+        Some(slots) => work(slots),
+        None => work(&mut vec![0.0; n]),
+    }
+}
+
 /// A growing set of nodes.
 #[derive(Default)]
 pub struct Graph {

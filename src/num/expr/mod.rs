@@ -28,7 +28,7 @@ pub use parse::functions;
 pub use program::Program;
 pub use terms::{Sums, sums};
 
-use graph::{Graph, Id, Node};
+use graph::{Graph, Id, Node, Two};
 use std::sync::Arc;
 
 /// An expression over a fixed list of variables.
@@ -72,19 +72,12 @@ impl Expr {
             let (got, expected) = (values.len(), self.variables.len());
             return Err(ExprError::Values { got, expected });
         }
-        let mut small = [0.0; 48];
-        let mut large = Vec::new();
-        let slots = match small.get_mut(..self.nodes.len()) {
-            Some(slots) => slots,
-            None => {
-                large.resize(self.nodes.len(), 0.0);
-                &mut large[..]
+        graph::with_slots(self.nodes.len(), |slots| {
+            if graph::run(&self.nodes, values, slots) {
+                return Ok(slots.last().copied().unwrap_or(0.0));
             }
-        };
-        if graph::run(&self.nodes, values, slots) {
-            return Ok(slots.last().copied().unwrap_or(0.0));
-        }
-        Err(self.fault(slots, values))
+            Err(error::fault(&self.nodes, &self.variables, slots, values))
+        })
     }
 
     /// The exact partial derivative by a variable, given by its place in the list.
@@ -110,6 +103,45 @@ impl Expr {
         self.like(&graph, root)
     }
 
+    /// The same expression over other variables, matched by name; nothing when it uses one that is
+    /// not among them.
+    pub fn over(&self, variables: &[&str]) -> Option<Self> {
+        let place = |v: u32| variables.iter().position(|n| *n == self.variables[v as usize]);
+        let moved = |&node: &Node| match node {
+            Node::Variable(v) => place(v).map(|p| Node::Variable(p as u32)),
+            other => Some(other),
+        };
+        let nodes: Option<Arc<[Node]>> = self.nodes.iter().map(moved).collect();
+        let variables = variables.iter().map(|&v| v.to_owned()).collect();
+        Some(Self { nodes: nodes?, variables })
+    }
+
+    /// The sum with an expression over the same variables.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        self.joined(Two::Add, other)
+    }
+
+    /// The product with an expression over the same variables.
+    #[must_use]
+    pub fn times(&self, other: &Self) -> Self {
+        self.joined(Two::Mul, other)
+    }
+
+    /// The product with a number.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let number = Arc::new([Node::Number(factor)]);
+        self.times(&Self { nodes: number, variables: self.variables.clone() })
+    }
+
+    fn joined(&self, f: Two, other: &Self) -> Self {
+        let mut graph = Graph::default();
+        let (a, b) = (graph.copy(&self.nodes, Graph::push), graph.copy(&other.nodes, Graph::push));
+        let root = graph.two(f, a, b);
+        self.like(&graph, root)
+    }
+
     /// Whether the variable occurs.
     pub fn depends_on(&self, variable: usize) -> bool {
         self.nodes.iter().any(|n| matches!(n, Node::Variable(v) if *v as usize == variable))
@@ -125,11 +157,6 @@ impl Expr {
 
     fn like(&self, graph: &Graph, root: Id) -> Self {
         Self { nodes: graph.part(root).into(), variables: self.variables.clone() }
-    }
-
-    /// What went wrong in a failed run.
-    fn fault(&self, slots: &[f64], values: &[f64]) -> ExprError {
-        error::fault(&self.nodes, &self.variables, slots, values)
     }
 }
 

@@ -30,26 +30,25 @@ impl Program {
         self.roots.is_empty()
     }
 
-    /// The values of all expressions, in order, into `out`; `scratch` is reused between calls.
+    /// The values of all expressions, in order, into `out`, one place each.
     ///
     /// # Errors
     /// As [`Expr::eval`].
-    pub fn eval(
-        &self,
-        values: &[f64],
-        scratch: &mut Vec<f64>,
-        out: &mut Vec<f64>,
-    ) -> Result<(), ExprError> {
-        if values.len() != self.variables.len() {
-            let (got, expected) = (values.len(), self.variables.len());
-            return Err(ExprError::Values { got, expected });
+    pub fn eval(&self, values: &[f64], out: &mut [f64]) -> Result<(), ExprError> {
+        for (got, expected) in [(values.len(), self.variables.len()), (out.len(), self.roots.len())]
+        {
+            if got != expected {
+                return Err(ExprError::Values { got, expected });
+            }
         }
-        scratch.resize(self.nodes.len(), 0.0);
-        if !graph::run(&self.nodes, values, scratch) {
-            return Err(error::fault(&self.nodes, &self.variables, scratch, values));
-        }
-        out.clear();
-        out.extend(self.roots.iter().map(|&r| scratch[r as usize]));
-        Ok(())
+        graph::with_slots(self.nodes.len(), |slots| {
+            if !graph::run(&self.nodes, values, slots) {
+                return Err(error::fault(&self.nodes, &self.variables, slots, values));
+            }
+            for (x, &r) in out.iter_mut().zip(&self.roots) {
+                *x = slots[r as usize];
+            }
+            Ok(())
+        })
     }
 }
