@@ -127,7 +127,7 @@ pub fn exact(spec: &BlendSpec, series: &Separated) -> Result<Exact, SurfaceError
 
 /// The factors b, c with gamma F_vv = b F and lambda F_vvvv + rho F_tt + eta F_t = c F.
 fn multiples(operator: &Operator, spec: &BlendSpec) -> Result<[f64; 2], String> {
-    let points = functions::samples(spec.v, 61, 7);
+    let points = functions::probes(spec.v);
     let [f, second, rest] =
         operator.columns(&points).map_err(|e| format!("has no derivatives: {e}"))?;
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();

@@ -30,8 +30,19 @@ const CLOSED: f64 = 1e-9;
 /// Most functions: far above any boundary written by hand.
 const MOST: usize = 64;
 
-/// The functions of both ends, none a sum of the others.
-pub fn functions(sides: &[Side; 2], v: [f64; 2]) -> Result<Vec<Function>, SurfaceError> {
+/// Condition number above which functions are no longer told apart well enough to say that a
+/// derivative is a sum of them: powers of t up to 6 reach 2,000, powers of v^2 times exp(-v^2), which
+/// only seem to close, far more.
+const DISTINCT: f64 = 1e4;
+/// Most functions added so that derivatives are sums of functions again.
+const ADDED: usize = 24;
+
+/// The functions of both ends, none a sum of the others, and those that their derivatives need.
+pub fn functions(
+    sides: &[Side; 2],
+    v: [f64; 2],
+    handles: &Handles,
+) -> Result<Vec<Function>, SurfaceError> {
     let rows = sides.iter().flat_map(|s| [&s.position, &s.tangent]);
     let all: Vec<Expr> = rows.flatten().cloned().collect();
     let Sums { functions, terms } = sums(&all);
@@ -46,31 +57,66 @@ pub fn functions(sides: &[Side; 2], v: [f64; 2]) -> Result<Vec<Function>, Surfac
             list[j].ends[i / 3][i % 3] += x;
         }
     }
-    independent(list, v)
+    let list = independent(list, v)?;
+    Ok(closed(&list, v, handles).unwrap_or(list))
+}
+
+/// The functions with those added, zero at both ends, that make all derivatives sums of functions:
+/// `cos(t)*cos(v)` beside `sin(t)*cos(v)` where eta asks for it. The equation can then be solved, not
+/// only its residual kept small. Nothing where a few functions do not suffice, as for `tan(v)`.
+fn closed(list: &[Function], v: [f64; 2], handles: &Handles) -> Option<Vec<Function>> {
+    let points = probes(v);
+    let mut all = list.to_vec();
+    loop {
+        let basis = columns(&all, &points).ok()?;
+        let mut parts = Vec::new();
+        for f in &all {
+            parts.extend(Operator::parts(&f.f, handles).ok()?);
+        }
+        let values: Result<Vec<_>, _> = parts.iter().map(|f| column(f, &points)).collect();
+        let (left, condition) = project(&basis, &values.ok()?);
+        if condition > DISTINCT {
+            return None;
+        }
+        let open = parts.into_iter().zip(left).filter(|(_, (_, left))| *left > CLOSED);
+        let missing: Vec<Expr> = open.map(|(part, _)| part).collect();
+        if missing.is_empty() {
+            return Some(all);
+        }
+        let new = sums(&missing).functions.into_iter();
+        all.extend(new.map(|f| Function { f, ends: [DVec3::ZERO; 4] }));
+        if all.len() > MOST + ADDED {
+            return None;
+        }
+        all = independent(all, v).ok()?;
+        if all.len() > list.len() + ADDED {
+            return None;
+        }
+    }
 }
 
 /// Folds what is a sum of other functions into them, such as `sin(-v)` into `sin(v)`.
 fn independent(list: Vec<Function>, v: [f64; 2]) -> Result<Vec<Function>, SurfaceError> {
-    let points = samples(v, 61, 7);
-    let mut kept: Vec<(Function, Vec<f64>)> = Vec::new();
+    let points = probes(v);
+    let (mut kept, mut basis): (Vec<Function>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
     for new in list {
         let column = column(&new.f, &points).map_err(|e| at_end(&e))?;
         if norm(&column) == 0.0 {
             continue;
         }
-        let known: Vec<&[f64]> = kept.iter().map(|k| k.1.as_slice()).collect();
-        let (factors, rest) = project(&known, &column);
+        let (factors, rest) = project(&basis, std::slice::from_ref(&column)).0.swap_remove(0);
         if rest > DEPENDENT {
-            kept.push((new, column));
+            kept.push(new);
+            basis.push(column);
             continue;
         }
-        for ((old, _), x) in kept.iter_mut().zip(factors) {
+        for (old, x) in kept.iter_mut().zip(factors) {
             for (to, from) in old.ends.iter_mut().zip(new.ends) {
                 *to += from * x;
             }
         }
     }
-    Ok(kept.into_iter().map(|k| k.0).collect())
+    Ok(kept)
 }
 
 fn at_end(e: &ExprError) -> SurfaceError {
@@ -84,6 +130,15 @@ pub fn samples(v: [f64; 2], n: usize, m: usize) -> Vec<[f64; 2]> {
     (0..m).flat_map(|j| (0..n).map(move |i| [at(i), even(j, m)])).collect()
 }
 
+/// Points at which functions are told apart.
+pub fn probes(v: [f64; 2]) -> Vec<[f64; 2]> {
+    samples(v, 37, 6)
+}
+
+fn columns(list: &[Function], points: &[[f64; 2]]) -> Result<Vec<Vec<f64>>, ExprError> {
+    list.iter().map(|f| column(&f.f, points)).collect()
+}
+
 fn column(f: &Expr, points: &[[f64; 2]]) -> Result<Vec<f64>, ExprError> {
     points.iter().map(|p| f.eval(p)).collect()
 }
@@ -92,14 +147,21 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The sum of `basis` nearest to `x`, and what is left, as a part of x.
-fn project(basis: &[&[f64]], x: &[f64]) -> (Vec<f64>, f64) {
-    let a = Dense::from_fn(x.len(), basis.len(), |i, j| basis[j][i]);
-    let s = lsq::solve(a, Dense::from_fn(x.len(), 1, |i, _| x[i]));
-    let left: Vec<f64> = (0..x.len())
-        .map(|i| x[i] - basis.iter().zip(s.x.col(0)).map(|(b, c)| b[i] * c).sum::<f64>())
-        .collect();
-    (s.x.col(0).to_vec(), norm(&left) / norm(x).max(f64::MIN_POSITIVE))
+/// For every x the sum of `basis` nearest to it, and what is left, as a part of x (0 of nothing); and
+/// the condition number of the basis.
+fn project(basis: &[Vec<f64>], xs: &[Vec<f64>]) -> (Vec<(Vec<f64>, f64)>, f64) {
+    let rows = xs.first().map_or(0, Vec::len);
+    let a = Dense::from_fn(rows, basis.len(), |i, j| basis[j][i]);
+    let s = lsq::solve(a, Dense::from_fn(rows, xs.len(), |i, c| xs[c][i]));
+    let mut all = Vec::new();
+    for (c, x) in xs.iter().enumerate() {
+        let mut left = x.clone();
+        for (b, factor) in basis.iter().zip(s.x.col(c)) {
+            left.iter_mut().zip(b).for_each(|(x, b)| *x -= b * factor);
+        }
+        all.push((s.x.col(c).to_vec(), norm(&left) / norm(x).max(f64::MIN_POSITIVE)));
+    }
+    (all, s.condition)
 }
 
 /// What the equation makes of F_j: the factors of G_j'''', G_j'' and G_j.
@@ -112,19 +174,22 @@ pub struct Operator {
 
 impl Operator {
     /// For one function.
-    pub fn new(f: &Expr, h: &Handles) -> Result<Self, ExprError> {
-        let vv = f.derivative(V)?.derivative(V)?;
-        let v4 = vv.derivative(V)?.derivative(V)?;
-        let t = f.derivative(T)?;
-        let tt = t.derivative(T)?;
-        let still = [(h.lambda, v4), (h.rho, tt), (h.eta, t)];
-        let scaled = |x: f64, e: Expr| (x != 0.0).then(|| e.scaled(x));
-        let sum = |parts: Vec<Expr>| {
-            parts.into_iter().reduce(|a, b| a.plus(&b)).unwrap_or_else(|| f.scaled(0.0))
+    pub fn new(f: &Expr, handles: &Handles) -> Result<Self, ExprError> {
+        let [second, v4, tt, t] = Self::parts(f, handles)?;
+        let rest = v4.plus(&tt).plus(&t);
+        Ok(Self { rows: Program::new(&[f.clone(), second, rest]), beta: handles.beta })
+    }
+
+    /// gamma F_vv, lambda F_vvvv, rho F_tt, eta F_t; what has the factor zero is zero, even where the
+    /// derivative does not exist.
+    fn parts(f: &Expr, h: &Handles) -> Result<[Expr; 4], ExprError> {
+        let part = |factor: f64, variable: usize, order: usize| {
+            if factor == 0.0 {
+                return Ok(f.scaled(0.0));
+            }
+            (0..order).try_fold(f.clone(), |f, _| f.derivative(variable)).map(|f| f.scaled(factor))
         };
-        let second = sum(scaled(h.gamma, vv).into_iter().collect());
-        let rest = sum(still.into_iter().filter_map(|(x, e)| scaled(x, e)).collect());
-        Ok(Self { rows: Program::new(&[f.clone(), second, rest]), beta: h.beta })
+        Ok([part(h.gamma, V, 2)?, part(h.lambda, V, 4)?, part(h.rho, T, 2)?, part(h.eta, T, 1)?])
     }
 
     /// The three factors at every point.
@@ -150,26 +215,24 @@ pub fn groups(
     operators: &[Operator],
     v: [f64; 2],
 ) -> Result<Vec<Vec<usize>>, ExprError> {
-    let points = samples(v, 61, 7);
-    let mut columns = Vec::new();
-    for f in list {
-        columns.push(column(&f.f, &points)?);
+    let points = probes(v);
+    let basis = columns(list, &points)?;
+    let mut parts = Vec::new();
+    for operator in operators {
+        let [_, second, rest] = operator.columns(&points)?;
+        parts.extend([second, rest]);
     }
-    let basis: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
     let mut root: Vec<usize> = (0..list.len()).collect();
     let mut open = None;
-    for (j, operator) in operators.iter().enumerate() {
-        let [_, second, rest] = operator.columns(&points)?;
-        for x in [second, rest].iter().filter(|x| norm(x) > 0.0) {
-            let (factors, left) = project(&basis, x);
-            for (i, c) in factors.iter().enumerate() {
-                if c.abs() * norm(&columns[i]) > CLOSED * norm(x) {
-                    join(&mut root, i, j);
-                }
+    for (p, (factors, left)) in project(&basis, &parts).0.into_iter().enumerate() {
+        let (j, size) = (p / 2, norm(&parts[p]));
+        for (i, c) in factors.iter().enumerate() {
+            if c.abs() * norm(&basis[i]) > CLOSED * size {
+                join(&mut root, i, j);
             }
-            if left > CLOSED {
-                join(&mut root, *open.get_or_insert(j), j);
-            }
+        }
+        if left > CLOSED {
+            join(&mut root, *open.get_or_insert(j), j);
         }
     }
     let mut groups: Vec<Vec<usize>> = vec![Vec::new(); list.len()];

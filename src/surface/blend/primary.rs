@@ -1,5 +1,6 @@
 //! The surfaces that a blend lies between.
 
+use super::functions::samples;
 use super::{Blend, BlendSpec, Side};
 use crate::num::expr::Program;
 use crate::num::{Expr, ExprError};
@@ -143,7 +144,12 @@ impl Surface for Three {
 
 /// Evaluates the boundary data all over v and t in [0, 1].
 pub fn check_values(spec: &BlendSpec) -> Result<(), SurfaceError> {
-    super::functions::samples(spec.v, 65, 9).into_iter().try_for_each(|p| check_place(spec, p))
+    let all: Vec<Expr> =
+        spec.at.iter().flat_map(|s| [&s.position, &s.tangent]).flatten().cloned().collect();
+    let (program, mut out) = (Program::new(&all), vec![0.0; all.len()]);
+    let bad = |p: &[f64; 2]| program.eval(p, &mut out).is_err();
+    let place = samples(spec.v, 65, 9).into_iter().find(bad);
+    place.map_or(Ok(()), |p| check_place(spec, p))
 }
 
 /// Evaluates the boundary data at a (v, t); the error names the expression.

@@ -10,23 +10,29 @@ use crate::surface::SurfaceError;
 use glam::DVec3;
 
 /// Times in [0, 1] at which functions solved together are sampled; enough to tell apart powers of t
-/// up to 4 and half waves.
-const TIMES: usize = 5;
+/// up to 6 and half waves.
+const TIMES: usize = 7;
 /// Most corrections a function may have. Bubbles of higher degree gain nothing in double precision.
 const TERMS: usize = 40;
 /// Most collocation points a direction.
 const POINTS: usize = 400;
 /// Most multiplications of one least-squares problem, some seconds.
 const WORK: f64 = 4e9;
-/// Condition number from which an equation counts as singular.
-const SINGULAR: f64 = 1e9;
+/// Condition number, as a multiple of that of S_uuuu alone at the same points, from which an equation
+/// counts as singular. The multiple is about 1 for the paper's handles, 160 for powers of t up to 4,
+/// and 90,000 for ten bubbles at a resonance.
+const SINGULAR: f64 = 2e4;
+/// Corrections this many times larger than the boundary data mean a resonance: an oscillation of
+/// their own that the equation hardly damps. The paper's wildest handles (eta = -120) reach 200; handles
+/// within a thousandth of a resonance reach 10,000, and a blend like that is no use to anyone.
+const WILD: f64 = 1e4;
 
 /// Numbers that no blend can be made of.
 pub fn check(spec: &BlendSpec) -> Result<(), SurfaceError> {
     let Handles { beta, gamma, lambda, rho, eta } = spec.handles;
-    let named =
+    let mut named =
         [beta, gamma, lambda, rho, eta].into_iter().zip(["beta", "gamma", "lambda", "rho", "eta"]);
-    for (x, name) in named.filter(|(x, _)| !x.is_finite()) {
+    if let Some((x, name)) = named.find(|(x, _)| !x.is_finite()) {
         return Err(SurfaceError::new(name, format!("got {x}, expected a finite number")));
     }
     let [v0, v1] = spec.v;
@@ -55,7 +61,7 @@ pub fn check(spec: &BlendSpec) -> Result<(), SurfaceError> {
 
 /// Functions, cubics and corrections of a checked spec.
 pub fn solve(spec: &BlendSpec) -> Result<Separated, SurfaceError> {
-    let list = functions::functions(&spec.at, spec.v)?;
+    let list = functions::functions(&spec.at, spec.v, &spec.handles)?;
     let mut weights: Vec<Vec<DVec3>> = list
         .iter()
         .map(|f| f.ends.into_iter().chain((0..spec.terms).map(|_| DVec3::ZERO)).collect())
@@ -125,19 +131,47 @@ fn corrections(
     }
     let s = lsq::solve(a, b);
     // without the fourth derivative the equation says too little; the least correction is then right
-    if spec.handles.beta != 0.0 && s.condition > SINGULAR {
-        return Err(singular(spec, &list[group[0]], group.len(), s.condition));
+    let growth = growth(&s.x, group.iter().flat_map(|&j| list[j].ends));
+    let loose = spec.handles.beta != 0.0 && s.condition > SINGULAR * plain(spec);
+    if loose || growth > WILD {
+        return Err(singular(spec, &list[group[0]], group.len(), [s.condition, growth]));
     }
     Ok(s.x)
 }
 
-fn singular(spec: &BlendSpec, f: &Function, coupled: usize, condition: f64) -> SurfaceError {
+/// The largest correction as a multiple of the largest boundary datum; infinite where one is no number.
+fn growth(corrections: &Dense, ends: impl Iterator<Item = DVec3>) -> f64 {
+    let data = ends.fold(0.0, |m: f64, e| m.max(e.abs().max_element()));
+    let all = (0..3).flat_map(|c| corrections.col(c));
+    let most =
+        all.fold(0.0, |m: f64, x| if x.is_finite() { m.max(x.abs()) } else { f64::INFINITY });
+    if most == 0.0 { 0.0 } else { most / data }
+}
+
+/// The condition number of S_uuuu alone.
+fn plain(spec: &BlendSpec) -> f64 {
+    let count = spec.collocation[0];
+    let mut a = Dense::new(count, spec.terms);
+    for l in 0..count {
+        let u = l as f64 / (count - 1) as f64;
+        spec.basis.jets(u, spec.terms, |k, z| a.col_mut(k)[l] = z[4]);
+    }
+    lsq::solve(a, Dense::new(count, 0)).condition
+}
+
+fn singular(
+    spec: &BlendSpec,
+    f: &Function,
+    coupled: usize,
+    [condition, growth]: [f64; 2],
+) -> SurfaceError {
     let Handles { beta, gamma, lambda, rho, eta } = spec.handles;
     let others = if coupled > 1 { format!(" and {} more", coupled - 1) } else { String::new() };
     let why = format!(
-        "the equation for `{}`{others} is nearly singular (condition number about {condition:.0e}) with \
-         beta = {beta}, gamma = {gamma}, lambda = {lambda}, rho = {rho}, eta = {eta}: a resonance of \
-         these handles, or too few collocation points over v to tell the functions apart",
+        "the equation for `{}`{others} is nearly singular (condition number about {condition:.0e}, \
+         corrections {growth:.0e} times the boundary data) with beta = {beta}, gamma = {gamma}, \
+         lambda = {lambda}, rho = {rho}, eta = {eta}: these handles are at a resonance, or there are \
+         too few collocation points to tell the functions apart",
         f.f
     );
     SurfaceError::new("beta", why)
