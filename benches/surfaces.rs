@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use fieldgraft::surface::blend::{Basis, Blend, BlendSpec, cone, cylinders, frustum};
-use fieldgraft::surface::{Motion, Surface, SurfaceError};
+use fieldgraft::surface::{Motion, SurfaceError};
 use glam::dvec2;
 use std::f64::consts::TAU;
 use std::hint::black_box;

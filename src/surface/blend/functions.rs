@@ -48,7 +48,10 @@ pub fn functions(
     let Sums { functions, terms } = sums(&all);
     if functions.len() > MOST {
         let n = functions.len();
-        return Err(SurfaceError::new("at-0", format!("{n} different functions, at most {MOST}")));
+        return Err(SurfaceError::new(
+            "at-0, at-1",
+            format!("{n} different functions, at most {MOST}"),
+        ));
     }
     let mut list: Vec<Function> =
         functions.into_iter().map(|f| Function { f, ends: [DVec3::ZERO; 4] }).collect();
@@ -120,7 +123,7 @@ fn independent(list: Vec<Function>, v: [f64; 2]) -> Result<Vec<Function>, Surfac
 }
 
 fn at_end(e: &ExprError) -> SurfaceError {
-    SurfaceError::new("at-0", e.to_string())
+    SurfaceError::new("at-0, at-1", e.to_string())
 }
 
 /// `n` by `m` points over the v of the blend and t in [0, 1], ends included, v fastest.

@@ -89,7 +89,7 @@ impl Side {
     /// goes on straight along the tangent for a quarter of its length.
     ///
     /// # Errors
-    /// `position[i]` or `tangent[i]`, and what is wrong with the expression.
+    /// `position[i]` or `tangent[i]` (the caller knows which end), and what is wrong with the expression.
     pub fn new(position: [&str; 3], tangent: [&str; 3]) -> Result<Self, SurfaceError> {
         let position = read("position", position, &["v", "t"])?;
         let tangent = read("tangent", tangent, &["v", "t"])?;
