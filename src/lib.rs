@@ -64,6 +64,7 @@ pub mod warp;
 pub mod weight;
 // floor 2
 pub mod bvh;
+pub mod surface;
 // floor 3
 pub mod element;
 // floor 4

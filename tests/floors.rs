@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 const FLOORS: &[&[&str]] = &[
     &["num", "job"],
     &["mesh", "grid", "weight", "warp"],
-    &["bvh"],
+    &["bvh", "surface"],
     &["element"],
     &["field"],
     &["morph", "iso", "check", "picture", "recipe"],

@@ -1,7 +1,12 @@
-//! Intervals and boxes: the two enclosures that every bound is made of.
+//! Numbers: intervals and boxes, the two enclosures that every bound is made of; arithmetic
+//! expressions as files hold them; and near-miss names.
 
 mod aabb;
+pub mod expr;
 mod interval;
+pub mod lsq;
+pub mod near;
 
 pub use aabb::Aabb;
+pub use expr::{Expr, ExprError};
 pub use interval::Interval;
