@@ -7,7 +7,6 @@
 mod features;
 mod json;
 mod method;
-mod near;
 mod output;
 mod shapes;
 mod solid;
@@ -15,12 +14,12 @@ mod source;
 mod time;
 mod value;
 
+pub use crate::num::near::{did_you_mean, nearest};
 pub use features::{ElementEntry, ElementShape, FeatureEntry, FeatureMorph, MeshShape};
 pub use method::{
     BlendEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry, OneOrMany, SpaceTimeEntry,
     WeightingEntry, WeightingKind, Weights,
 };
-pub use near::{did_you_mean, nearest};
 pub use output::{GridEntry, MesherEntry, OutputEntry};
 pub use shapes::{
     LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,

@@ -1,6 +1,6 @@
 //! Where things stand in a recipe's text: keys to lines, and parse errors to keys.
 
-use super::near::did_you_mean;
+use crate::num::near::did_you_mean;
 use serde::de::DeserializeOwned;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
