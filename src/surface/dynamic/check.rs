@@ -2,11 +2,12 @@
 
 use super::boundary::VARIABLES;
 use super::grid::Grid;
+use super::solver::Solver;
 use super::{Control, Curves, Options, Start};
 use crate::num::Expr;
 use crate::surface::SurfaceError;
 
-/// Most numbers in the factored matrix: half a gigabyte, 322 nodes a side when square.
+/// Most numbers in the factors of a matrix: half a gigabyte, 408 nodes a side when square.
 const MOST: usize = 1 << 26;
 
 /// Refuses options that mean nothing or would not fit into memory.
@@ -16,7 +17,7 @@ pub fn options(o: &Options) -> Result<(), SurfaceError> {
         let why = format!("{nu} x {nv} nodes, at least {} along each side", Grid::LEAST);
         return Err(SurfaceError::new("grid", why));
     }
-    if Grid::entries(o.grid).is_none_or(|n| n > MOST) {
+    if Solver::entries(o.grid).is_none_or(|n| n > MOST) {
         let why = format!("{nu} x {nv} nodes need a factor of more than {MOST} numbers");
         return Err(SurfaceError::new("grid", why));
     }
@@ -93,7 +94,7 @@ pub fn definite(o: &Options, grid: &Grid) -> Result<(), SurfaceError> {
         if elliptic || o.control[..k].contains(control) {
             continue;
         }
-        let found = match grid.matrix(control, 0.0).factor().map(|ldl| ldl.negative()) {
+        let found = match Solver::new(grid, control, 0.0).map(|s| s.negative()) {
             Ok(0) => continue,
             Ok(n) => format!("{n} negative eigenvalues"),
             Err(_) => "an eigenvalue of zero".to_owned(),

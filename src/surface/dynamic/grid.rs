@@ -1,7 +1,6 @@
 //! The nodes of the unit square and the difference operator on them.
 
 use super::Control;
-use crate::num::Band;
 
 /// Nodes on [0, 1]², with a ring of ghosts around them.
 ///
@@ -52,7 +51,7 @@ impl Grid {
     }
 
     /// The axes in the order of the unknowns, slow one first.
-    fn order(&self) -> [usize; 2] {
+    pub fn order(&self) -> [usize; 2] {
         if self.size[1] <= self.size[0] { [0, 1] } else { [1, 0] }
     }
 
@@ -100,7 +99,7 @@ impl Grid {
     }
 
     /// b, c and d over the powers of the steps.
-    fn coefficients(&self, control: &Control) -> [f64; 3] {
+    pub fn coefficients(&self, control: &Control) -> [f64; 3] {
         let [hu, hv] = [self.step(0), self.step(1)].map(|h| h * h);
         [control.b / (hu * hu), control.c / (hu * hv), control.d / (hv * hv)]
     }
@@ -116,47 +115,10 @@ impl Grid {
             let near_v = x(p - v) + x(p + v);
             let far_u = x(p - 2 * u) + x(p + 2 * u);
             let far_v = x(p - 2 * v) + x(p + 2 * v);
-            let slant = x(p - u - v) + x(p - u + v) + x(p + u - v) + x(p + u + v);
+            let slant = (x(p - u - v) + x(p + u - v)) + (x(p - u + v) + x(p + u + v));
             *out = b * (6.0 * x(p) - 4.0 * near_u + far_u)
                 + c * (4.0 * x(p) - 2.0 * (near_u + near_v) + slant)
                 + d * (6.0 * x(p) - 4.0 * near_v + far_v);
         }
-    }
-
-    /// The matrix of [`Self::operate`] on the unknowns plus `shift` times the identity; a ghost is
-    /// its mirror node plus data, which adds 1 to the 6 of nodes next to the boundary.
-    pub fn matrix(&self, control: &Control, shift: f64) -> Band {
-        let [b, c, d] = self.coefficients(control);
-        let [slow, fast] = self.order();
-        let (s4, f4) = if slow == 0 { (b, d) } else { (d, b) };
-        let [rows, m] = [self.size[slow] - 2, self.size[fast] - 2];
-        let ghosts = |k: usize, n: usize| f64::from(u8::from(k == 0) + u8::from(k + 1 == n));
-        let mut matrix = Band::zero(rows * m, 2 * m);
-        for s in 0..rows {
-            for f in 0..m {
-                let row = s * m + f;
-                let diagonal = s4 * (6.0 + ghosts(s, rows)) + f4 * (6.0 + ghosts(f, m));
-                matrix.add(row, 0, diagonal + 4.0 * c + shift);
-                if f >= 1 {
-                    matrix.add(row, 1, -4.0 * f4 - 2.0 * c);
-                    matrix.add(row, m + 1, c);
-                }
-                if f >= 2 {
-                    matrix.add(row, 2, f4);
-                }
-                if f + 1 < m {
-                    matrix.add(row, m - 1, c);
-                }
-                matrix.add(row, m, -4.0 * s4 - 2.0 * c);
-                matrix.add(row, 2 * m, s4);
-            }
-        }
-        matrix
-    }
-
-    /// Numbers the matrix stores, `None` beyond what can be counted.
-    pub fn entries(size: [usize; 2]) -> Option<usize> {
-        let [u, v] = size.map(|n| n.saturating_sub(2));
-        Band::entries(u.checked_mul(v)?, u.min(v).checked_mul(2)?)
     }
 }

@@ -28,6 +28,7 @@ mod boundary;
 mod check;
 mod grid;
 mod motion;
+mod solver;
 mod step;
 #[cfg(test)]
 mod tests;

@@ -46,10 +46,10 @@ impl Dynamic {
         kept[0].clone()
     }
 
-    /// Takes a state one step on, beyond the last step too.
+    /// Takes a state one step on, beyond the last step too; a state that failed is of no more use.
     ///
     /// # Errors
-    /// Expressions without a value at that time, curves that do not meet, a surface that overflows.
+    /// A state of another grid, expressions without a value at that time, curves that do not meet, a surface that overflows.
     pub fn step(&self, state: &mut State) -> Result<(), SurfaceError> {
         self.own(state)?;
         self.stepper.step(state)

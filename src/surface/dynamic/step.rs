@@ -2,16 +2,18 @@
 
 use super::boundary::{Rim, fault};
 use super::grid::Grid;
+use super::solver::Solver;
 use super::{Control, Options, Scheme, Start};
-use crate::num::{Expr, Ldl};
+use crate::num::Expr;
 use crate::surface::SurfaceError;
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Largest coordinate of a state, mm; what goes beyond is a runaway, not a surface.
 const FARTHEST: f64 = 1e12;
 
 /// Positions and velocities of the nodes at one step.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct State {
     /// Steps taken since t = 0.
     pub step: usize,
@@ -21,6 +23,8 @@ pub struct State {
     pub(super) position: [Vec<f64>; 3],
     /// Velocities of the unknowns.
     pub(super) velocity: [Vec<f64>; 3],
+    /// Forces at this step, where the step before has worked them out.
+    force: [Vec<f64>; 3],
 }
 
 /// Everything that stays the same from step to step.
@@ -29,7 +33,7 @@ pub struct Stepper {
     pub(super) options: Options,
     pub(super) grid: Grid,
     /// The factored matrix and the components that it steps.
-    systems: Vec<(Ldl, Vec<usize>)>,
+    systems: Vec<(Solver, Vec<usize>)>,
     /// Forces that do not depend on time, at the unknowns.
     forces: [Option<Vec<f64>>; 3],
     /// Boundary data that does not depend on time.
@@ -84,7 +88,7 @@ impl Stepper {
         &self,
         components: impl Iterator<Item = usize>,
         shift: f64,
-    ) -> Result<Vec<(Ldl, Vec<usize>)>, SurfaceError> {
+    ) -> Result<Vec<(Solver, Vec<usize>)>, SurfaceError> {
         let mut groups: Vec<(Control, Vec<usize>)> = vec![];
         for k in components {
             let control = self.options.control[k];
@@ -94,10 +98,9 @@ impl Stepper {
             }
         }
         let factored = groups.into_iter().map(|(control, list)| {
-            let ldl = self.grid.matrix(&control, shift).factor();
-            let ldl =
-                ldl.map_err(|e| SurfaceError::new("control", format!("cannot solve: {e}")))?;
-            Ok((ldl, list))
+            let solver = Solver::new(&self.grid, &control, shift)
+                .map_err(|e| SurfaceError::new("control", format!("cannot solve: {e}")))?;
+            Ok((solver, list))
         });
         factored.collect()
     }
@@ -127,41 +130,51 @@ impl Stepper {
         self.sample(&self.options.force[k], t, format!("force[{k}]"))
     }
 
-    /// Adds force minus operator: what a net of component `k` lacks to balance at time `t`.
-    fn add_lack(&self, k: usize, t: f64, net: &[f64], out: &mut [f64]) -> Result<(), SurfaceError> {
-        let fresh = if self.forces[k].is_none() { self.force_at(k, t)? } else { vec![] };
-        let force = self.forces[k].as_ref().unwrap_or(&fresh);
+    fn force(&self, k: usize, t: f64) -> Result<Cow<'_, [f64]>, SurfaceError> {
+        match &self.forces[k] {
+            Some(force) => Ok(Cow::Borrowed(force)),
+            None => self.force_at(k, t).map(Cow::Owned),
+        }
+    }
+
+    /// Adds force minus operator: what a net of component `k` lacks to balance.
+    fn add_lack(&self, k: usize, force: &[f64], net: &[f64], out: &mut [f64]) {
         let mut pull = vec![0.0; out.len()];
         self.grid.operate(&self.options.control[k], net, &mut pull);
         for ((out, f), pull) in out.iter_mut().zip(force).zip(pull) {
             *out += f - pull;
         }
-        Ok(())
+    }
+
+    /// The state at rest in the rest patch at time `t`.
+    fn rest(&self, t: f64) -> Result<State, SurfaceError> {
+        let mut state = State {
+            step: 0,
+            size: self.grid.size,
+            position: [const { vec![] }; 3],
+            velocity: [(); 3].map(|()| vec![0.0; self.grid.unknowns.len()]),
+            force: [const { vec![] }; 3],
+        };
+        for k in 0..3 {
+            state.position[k] = self.rim(k, t)?.rest(&self.grid);
+        }
+        Ok(state)
     }
 
     /// The state at t = 0.
     pub fn start(&self) -> Result<State, SurfaceError> {
-        let velocity = [(); 3].map(|()| vec![0.0; self.grid.unknowns.len()]);
-        let position = [const { vec![] }; 3];
-        let mut state = State { step: 0, size: self.grid.size, position, velocity };
-        match &self.options.start {
+        let mut state = match &self.options.start {
             Start::Steady => return self.steady(0.0),
-            Start::Rest => {
-                for k in 0..3 {
-                    state.position[k] = self.rim(k, 0.0)?.rest(&self.grid);
-                }
-            }
-            Start::Given { position, velocity } => {
-                for k in 0..3 {
-                    let rim = self.rim(k, 0.0)?;
-                    let inner = self.sample(&position[k], 0.0, format!("start.position[{k}]"))?;
-                    let mut net = rim.rest(&self.grid);
-                    self.grid.unknowns.iter().zip(inner).for_each(|(&p, x)| net[p] = x);
-                    rim.impose(&self.grid, &mut net);
-                    state.position[k] = net;
-                    let at = format!("start.velocity[{k}]");
-                    state.velocity[k] = self.sample(&velocity[k], 0.0, at)?;
-                }
+            Start::Rest | Start::Given { .. } => self.rest(0.0)?,
+        };
+        if let Start::Given { position, velocity } = &self.options.start {
+            for k in 0..3 {
+                let inner = self.sample(&position[k], 0.0, format!("start.position[{k}]"))?;
+                let net = &mut state.position[k];
+                self.grid.unknowns.iter().zip(inner).for_each(|(&p, x)| net[p] = x);
+                self.rim(k, 0.0)?.impose(&self.grid, net);
+                let at = format!("start.velocity[{k}]");
+                state.velocity[k] = self.sample(&velocity[k], 0.0, at)?;
             }
         }
         self.guard(state)
@@ -169,18 +182,14 @@ impl Stepper {
 
     /// The balance of force and boundary at time `t`, without motion.
     pub fn steady(&self, t: f64) -> Result<State, SurfaceError> {
-        let count = self.grid.unknowns.len();
-        let velocity = [(); 3].map(|()| vec![0.0; count]);
-        let position = [const { vec![] }; 3];
-        let mut state = State { step: 0, size: self.grid.size, position, velocity };
-        let mut sides = [(); 3].map(|()| vec![0.0; count]);
+        let mut state = self.rest(t)?;
+        let mut sides = [(); 3].map(|()| vec![0.0; self.grid.unknowns.len()]);
         for k in 0..3 {
-            state.position[k] = self.rim(k, t)?.rest(&self.grid);
-            self.add_lack(k, t, &state.position[k], &mut sides[k])?;
+            self.add_lack(k, &self.force(k, t)?, &state.position[k], &mut sides[k]);
         }
         let live = (0..3).filter(|&k| !self.idle(k));
-        for (ldl, list) in self.factor(live, 0.0)? {
-            solve(&ldl, &list, &mut sides);
+        for (solver, list) in self.factor(live, 0.0)? {
+            solve(&solver, &list, &mut sides);
             for k in list {
                 let rim = self.rim(k, t)?;
                 self.shift_by(&mut state.position[k], &sides[k], &rim);
@@ -205,27 +214,16 @@ impl Stepper {
     /// where x keeps its unknowns and takes the boundary of the time named. The second is the
     /// paper's eq. 6 over 2 dt² h⁴.
     pub fn step(&self, state: &mut State) -> Result<(), SurfaceError> {
-        let Options { rho, eta, dt, scheme, .. } = self.options;
-        let (t, next) = (self.time(state.step), self.time(state.step + 1));
+        let Options { dt, scheme, .. } = self.options;
         let mut ways = [const { vec![] }; 3];
         let mut rims = [const { None }; 3];
         for &k in self.systems.iter().flat_map(|s| &s.1) {
-            let inertia = match scheme {
-                Scheme::Trapezoidal => 4.0 * rho / dt,
-                Scheme::Implicit => rho / dt - 0.5 * eta,
-            };
-            let mut side: Vec<f64> = state.velocity[k].iter().map(|v| inertia * v).collect();
-            let rim = self.rim(k, next)?;
-            if scheme == Scheme::Trapezoidal {
-                self.add_lack(k, t, &state.position[k], &mut side)?;
-            }
-            rim.impose(&self.grid, &mut state.position[k]);
-            let force_time = if scheme == Scheme::Trapezoidal { next } else { t };
-            self.add_lack(k, force_time, &state.position[k], &mut side)?;
-            (ways[k], rims[k]) = (side, Some(rim));
+            let rim = self.rim(k, self.time(state.step + 1))?;
+            ways[k] = self.side(state, k, &rim)?;
+            rims[k] = Some(rim);
         }
-        for (ldl, list) in &self.systems {
-            solve(ldl, list, &mut ways);
+        for (solver, list) in &self.systems {
+            solve(solver, list, &mut ways);
         }
         for k in 0..3 {
             let Some(rim) = &rims[k] else { continue };
@@ -239,6 +237,35 @@ impl Stepper {
         }
         state.step += 1;
         self.check(state)
+    }
+
+    /// The right side of a step for component `k`; its net takes the boundary after the step.
+    fn side(&self, state: &mut State, k: usize, rim: &Rim) -> Result<Vec<f64>, SurfaceError> {
+        let Options { rho, eta, dt, scheme, .. } = self.options;
+        let (now, next) = (self.time(state.step), self.time(state.step + 1));
+        let inertia = match scheme {
+            Scheme::Trapezoidal => 4.0 * rho / dt,
+            Scheme::Implicit => rho / dt - 0.5 * eta,
+        };
+        let mut side: Vec<f64> = state.velocity[k].iter().map(|v| inertia * v).collect();
+        let force = match std::mem::take(&mut state.force[k]) {
+            known if !known.is_empty() => Cow::Owned(known),
+            _ => self.force(k, now)?,
+        };
+        let net = &mut state.position[k];
+        if scheme == Scheme::Implicit {
+            rim.impose(&self.grid, net);
+            self.add_lack(k, &force, net, &mut side);
+            return Ok(side);
+        }
+        self.add_lack(k, &force, net, &mut side);
+        rim.impose(&self.grid, net);
+        let force = self.force(k, next)?;
+        self.add_lack(k, &force, net, &mut side);
+        if let Cow::Owned(force) = force {
+            state.force[k] = force;
+        }
+        Ok(side)
     }
 
     fn guard(&self, state: State) -> Result<State, SurfaceError> {
@@ -267,12 +294,12 @@ impl Stepper {
 }
 
 /// Solves for the components of one system.
-fn solve(ldl: &Ldl, list: &[usize], sides: &mut [Vec<f64>; 3]) {
+fn solve(solver: &Solver, list: &[usize], sides: &mut [Vec<f64>; 3]) {
     let mut chosen: Vec<&mut [f64]> = sides
         .iter_mut()
         .enumerate()
         .filter(|(k, _)| list.contains(k))
         .map(|(_, side)| side.as_mut_slice())
         .collect();
-    ldl.solve(&mut chosen);
+    solver.solve(&mut chosen);
 }

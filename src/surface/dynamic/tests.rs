@@ -2,7 +2,7 @@
 //! reference is exact in time (all modes of the difference operator).
 
 use super::*;
-use crate::surface::{Motion, Surface, SurfaceError};
+use crate::surface::{Motion, SurfaceError};
 use glam::{DVec3, dvec2};
 
 fn e(text: &str) -> Expr {
