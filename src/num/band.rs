@@ -202,9 +202,9 @@ mod tests {
         let mut x = side.clone();
         let Ok(ldl) = m.factor() else { panic!("dominant") };
         ldl.solve(&mut [&mut x]);
-        for r in 0..size {
+        for (r, want) in side.iter().enumerate() {
             let got: f64 = (0..size).map(|c| entry(r, c) * x[c]).sum();
-            assert!((got - side[r]).abs() < 1e-12);
+            assert!((got - want).abs() < 1e-12);
         }
     }
 

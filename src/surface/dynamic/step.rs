@@ -184,8 +184,8 @@ impl Stepper {
     pub fn steady(&self, t: f64) -> Result<State, SurfaceError> {
         let mut state = self.rest(t)?;
         let mut sides = [(); 3].map(|()| vec![0.0; self.grid.unknowns.len()]);
-        for k in 0..3 {
-            self.add_lack(k, &self.force(k, t)?, &state.position[k], &mut sides[k]);
+        for (k, side) in sides.iter_mut().enumerate() {
+            self.add_lack(k, &self.force(k, t)?, &state.position[k], side);
         }
         let live = (0..3).filter(|&k| !self.idle(k));
         for (solver, list) in self.factor(live, 0.0)? {

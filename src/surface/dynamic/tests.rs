@@ -236,10 +236,10 @@ fn quadratic_motions_are_exact() {
         for k in 0..50 {
             let (u, v) = ((k as f64 * 0.137).fract(), (k as f64 * 0.311).fract());
             let jet = surface.jet(0, dvec2(u, v));
-            for k in 0..3 {
+            for (k, position) in position.iter().enumerate() {
                 let at = [u, v, 0.84];
-                let by = |i| position[k].derivative(i).unwrap().eval(&at).unwrap();
-                assert!((jet.s[k] - position[k].eval(&at).unwrap()).abs() < 1e-9);
+                let by = |i| position.derivative(i).unwrap().eval(&at).unwrap();
+                assert!((jet.s[k] - position.eval(&at).unwrap()).abs() < 1e-9);
                 assert!((jet.su[k] - by(0)).abs() < 1e-8 && (jet.sv[k] - by(1)).abs() < 1e-8);
             }
         }
