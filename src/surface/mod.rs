@@ -5,6 +5,8 @@
 //! *motion* gives a surface for every t in [0, 1]. Lengths are millimetres, angles radians.
 
 pub mod blend;
+pub mod bicubic;
+pub mod dynamic;
 
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
