@@ -49,7 +49,7 @@ impl Impact {
         net: &Net,
         to: f64,
     ) -> Result<Vec<f64>, SurfaceError> {
-        if let Some(axis) = self.radius.iter().position(|r| !(*r > 0.0)) {
+        if let Some(axis) = self.radius.iter().position(|r| r.is_nan() || *r <= 0.0) {
             let why = format!("radius is {}; expected a positive number", self.radius[axis]);
             return wrong(format!("radius[{axis}]"), why);
         }

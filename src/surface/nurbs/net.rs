@@ -218,7 +218,7 @@ pub(super) fn ends(
 
 fn pole(point: [f64; 4], row: usize, column: usize) -> Result<DVec4, SurfaceError> {
     let [x, y, z, w] = point;
-    if let Some(c) = [x, y, z].into_iter().find(|c| !(c.abs() <= LARGEST)) {
+    if let Some(c) = [x, y, z].into_iter().find(|c| c.is_nan() || c.abs() > LARGEST) {
         return wrong(place("net", row, column), format!("coordinate is {c}"));
     }
     if !is_mass(w) {

@@ -1,6 +1,7 @@
 //! Numbers known without the code, and identities that hold for every net.
 
 mod basis;
+mod data;
 mod hostile;
 mod knots;
 mod morph;
