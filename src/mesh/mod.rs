@@ -28,7 +28,7 @@ mod edges;
 mod error;
 mod found;
 mod frame;
-mod polygon;
+pub(crate) mod polygon;
 mod read;
 mod soup;
 mod weld;

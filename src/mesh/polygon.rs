@@ -8,7 +8,7 @@ use robust::{Coord, orient2d};
 
 /// How a polygon was cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Cut {
+pub(crate) enum Cut {
     /// Convex: a fan.
     Convex,
     /// With corners that point inwards, or flat ones.
@@ -20,11 +20,11 @@ pub(super) enum Cut {
 /// Concave polygons with more corners become fans, which is wrong but quick: cutting ears looks at
 /// every corner for every ear. 4096 corners take 0.04 s as a comb and 0.4 s as a spiral; 100 000 in
 /// a spiral would take minutes. Real furniture has under a hundred.
-const MOST_CORNERS: usize = 4096;
+pub(crate) const MOST_CORNERS: usize = 4096;
 
 /// Appends the triangles of `ring` (point indices in order) to `out`, turning as the ring turns.
 /// Corners that stand where the one before does are left out; under three corners give nothing.
-pub(super) fn triangulate(ring: &[u32], points: &[DVec3], out: &mut Vec<[u32; 3]>) -> Cut {
+pub(crate) fn triangulate(ring: &[u32], points: &[DVec3], out: &mut Vec<[u32; 3]>) -> Cut {
     let at = |v: u32| points[v as usize];
     let mut ring = ring.to_vec();
     ring.dedup_by(|b, a| at(*a) == at(*b));

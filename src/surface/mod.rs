@@ -7,6 +7,7 @@
 pub mod blend;
 pub mod bicubic;
 pub mod dynamic;
+pub mod nurbs;
 
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
