@@ -4,6 +4,10 @@
 //! A *patch* is one map from a rectangle of (u, v) to space; a surface is one patch or many. A
 //! *motion* gives a surface for every t in [0, 1]. Lengths are millimetres, angles radians.
 
+pub mod pde;
+pub mod shapes;
+pub mod tessellate;
+
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 

@@ -1,0 +1,6 @@
+//! The dolphin.
+use crate::surface::pde::Boundary;
+/// x
+pub fn dolphin() -> Vec<Boundary> {
+    vec![]
+}
