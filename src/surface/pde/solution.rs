@@ -92,11 +92,12 @@ impl Solution {
             su: b + (c * 2.0 + d * (3.0 * uv.x)) * uv.x,
             sv: DVec3::ZERO,
         };
+        let mut wave = Wave::new(uv.y);
         for chunk in self.terms.chunk_by(|s, t| s.basis == t.basis) {
             let [values, slopes] = chunk[0].basis.jet(uv.x);
             for term in chunk {
                 let n = term.n as f64;
-                let (sin, cos) = (n * uv.y).sin_cos();
+                let (sin, cos) = wave.at(term.n);
                 let [a, b] = term.amplitude(&values);
                 let [au, bu] = term.amplitude(&slopes);
                 jet.s += a * cos + b * sin;
@@ -110,10 +111,11 @@ impl Solution {
     /// Position only.
     pub fn point(&self, uv: DVec2) -> DVec3 {
         let mut at = self.spine(uv.x);
+        let mut wave = Wave::new(uv.y);
         for chunk in self.terms.chunk_by(|s, t| s.basis == t.basis) {
             let values = chunk[0].basis.derivative(uv.x, 0);
             for term in chunk {
-                let (sin, cos) = (term.n as f64 * uv.y).sin_cos();
+                let (sin, cos) = wave.at(term.n);
                 let [a, b] = term.amplitude(&values);
                 at += a * cos + b * sin;
             }
@@ -184,6 +186,32 @@ impl Solution {
             }
         }
         out
+    }
+}
+
+/// Sine and cosine of n v for n that mostly rise by one: one turn further each time, which is four
+/// products and, over a thousand terms, good to 1e-13.
+struct Wave {
+    v: f64,
+    one: (f64, f64),
+    n: usize,
+    last: (f64, f64),
+}
+
+impl Wave {
+    fn new(v: f64) -> Self {
+        Self { v, one: v.sin_cos(), n: 0, last: (0.0, 1.0) }
+    }
+
+    fn at(&mut self, n: usize) -> (f64, f64) {
+        let ((s, c), (s1, c1)) = (self.last, self.one);
+        self.last = if n == self.n + 1 {
+            (s * c1 + c * s1, c * c1 - s * s1)
+        } else {
+            (n as f64 * self.v).sin_cos()
+        };
+        self.n = n;
+        self.last
     }
 }
 
