@@ -8,6 +8,9 @@ pub mod blend;
 pub mod bicubic;
 pub mod dynamic;
 pub mod nurbs;
+pub mod pde;
+pub mod shapes;
+pub mod tessellate;
 
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
