@@ -4,8 +4,8 @@
 //! A *patch* is one map from a rectangle of (u, v) to space; a surface is one patch or many. A
 //! *motion* gives a surface for every t in [0, 1]. Lengths are millimetres, angles radians.
 
-pub mod blend;
 pub mod bicubic;
+pub mod blend;
 pub mod dynamic;
 pub mod nurbs;
 pub mod pde;
