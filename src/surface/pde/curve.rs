@@ -98,6 +98,7 @@ impl Fourier {
     }
 
     /// The point at `v`.
+    #[cfg(test)]
     pub fn point(&self, v: f64) -> DVec3 {
         self.terms.iter().zip(1u32..).fold(self.mean, |sum, ([cos, sin], n)| {
             let (s, c) = (f64::from(n) * v).sin_cos();

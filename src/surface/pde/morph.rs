@@ -222,9 +222,9 @@ fn add(list: &mut Vec<Mode>, mode: Mode, share: &[f64; 4]) {
         list.push(Mode { cos: Default::default(), sin: Default::default(), ..mode });
         list.len() - 1
     });
-    for k in 0..4 {
-        list[at].cos[k] += mode.cos[k] * share[k];
-        list[at].sin[k] += mode.sin[k] * share[k];
+    for (k, share) in share.iter().enumerate() {
+        list[at].cos[k] += mode.cos[k] * *share;
+        list[at].sin[k] += mode.sin[k] * *share;
     }
 }
 

@@ -128,8 +128,8 @@ fn residual(solution: &Solution, a: f64, uv: DVec2) -> (f64, f64) {
         let (sin, cos) = (term.n as f64 * uv.y).sin_cos();
         for (order, factor) in [(4, 1.0), (2, -2.0 * a * a * n2), (0, (a * a * n2).powi(2))] {
             let f = term.basis.derivative(uv.x, order);
-            for k in 0..4 {
-                let part = (term.cos[k] * cos + term.sin[k] * sin) * (f[k] * factor);
+            for (k, f) in f.iter().enumerate() {
+                let part = (term.cos[k] * cos + term.sin[k] * sin) * (f * factor);
                 sum += part;
                 size += part.length();
             }
@@ -228,8 +228,10 @@ fn every_morph_ends_in_its_sides() {
 fn modes_leave_one_by_one() {
     let plain = |modes| Options { modes, ..PLAIN };
     let [from, to] = [24, 15].map(|n| lumpy(NODES, n));
-    let solve = |b: &Boundary, modes| PdeSurface::new(&[b.clone()], plain(modes)).unwrap().frame();
-    let [a, b] = [&from, &to].map(|x| PdeSurface::new(&[x.clone()], plain(3)).unwrap());
+    let solve = |b: &Boundary, modes| {
+        PdeSurface::new(std::slice::from_ref(b), plain(modes)).unwrap().frame()
+    };
+    let [a, b] = [&from, &to].map(|x| PdeSurface::new(std::slice::from_ref(x), plain(3)).unwrap());
     let modes = morph(&a, &b, Method::Modes);
     let frames = [(&from, 3), (&from, 2), (&from, 1), (&to, 1), (&to, 2), (&to, 3)];
     for (i, (side, count)) in frames.into_iter().enumerate() {
@@ -240,7 +242,8 @@ fn modes_leave_one_by_one() {
     let combined = morph(&a, &b, Method::Combined);
     for (i, count) in [3, 2, 1, 1, 1, 2, 3].into_iter().enumerate() {
         let t = i as f64 / 6.0;
-        let [a, b] = [&from, &to].map(|x| PdeSurface::new(&[x.clone()], plain(count)).unwrap());
+        let [a, b] =
+            [&from, &to].map(|x| PdeSurface::new(std::slice::from_ref(x), plain(count)).unwrap());
         let far =
             apart(&combined.frame(t).unwrap(), &morph(&a, &b, Method::Boundary).frame(t).unwrap());
         assert!(far < 1e-12, "frame {i}: {far}");

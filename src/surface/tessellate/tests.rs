@@ -19,7 +19,7 @@ impl Surface for Ball {
         Domain { u: [-1.0, 1.0], v: [-1.0, 1.0], wraps: [false, false] }
     }
     fn jet(&self, patch: usize, uv: DVec2) -> Jet {
-        let side = if patch % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if patch.is_multiple_of(2) { 1.0 } else { -1.0 };
         let p = match patch / 2 {
             0 => dvec3(side, uv.x, uv.y),
             1 => dvec3(uv.x, side, uv.y),
