@@ -120,6 +120,9 @@ pub(super) fn quotient([a, a1, a2]: [DVec4; 3]) -> CurveJet {
 /// A piece of a curve gets this many chords at most.
 const MOST_CHORDS: usize = 4096;
 
+/// A polyline gets this many points at most, however many pieces the curve has.
+const MOST_POINTS: usize = 1 << 20;
+
 /// Points along a curve whose chords stay within `tolerance` (mm) of it; the ends of its pieces are
 /// among them, so that corners stay sharp. A closed curve does not repeat its first point.
 ///
@@ -136,6 +139,10 @@ pub fn polyline(curve: &dyn Curve, tolerance: f64) -> Result<Vec<DVec3>, Surface
     let mut points = vec![];
     for (piece, ends) in breaks.windows(2).enumerate() {
         let n = chords(curve, piece, [ends[0], ends[1]], tolerance)?;
+        if points.len() + n > MOST_POINTS {
+            let why = format!("{tolerance} mm asks for more than {MOST_POINTS} points");
+            return wrong("tolerance", why);
+        }
         let at = |i: usize| ends[0] + (ends[1] - ends[0]) * (i as f64 / n as f64);
         points.extend((0..n).map(|i| curve.jet(piece, at(i)).c));
     }

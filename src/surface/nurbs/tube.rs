@@ -21,6 +21,9 @@ const TURN: f64 = 0.8;
 /// A piece gets this many nodes at most before its tangent counts as wild.
 const MOST_NODES: usize = 4096;
 
+/// A tube gets this many nodes at most, however many pieces the curve has.
+const MOST_IN_ALL: usize = 1 << 22;
+
 /// The tube of a radius round a curve: one closed patch a smooth run of the curve.
 ///
 /// A run from corner to corner, or from end to end, is closed by half balls, so that corners are
@@ -70,9 +73,13 @@ pub fn tube(curve: Arc<dyn Curve>, radius: f64) -> Result<Tube, SurfaceError> {
     }
     let breaks = curve.breaks();
     let pieces = breaks.len() - 1;
-    let mut runs: Vec<Run> = vec![];
+    let (mut runs, mut count): (Vec<Run>, usize) = (vec![], 0);
     for piece in 0..pieces {
         let nodes = nodes(&*curve, piece)?;
+        count += nodes.len();
+        if count > MOST_IN_ALL {
+            return wrong("curve", format!("the tube needs more than {MOST_IN_ALL} nodes"));
+        }
         let end = breaks[piece + 1];
         match runs.last_mut() {
             Some(run) if !corner(run.nodes[run.nodes.len() - 1].t, nodes[0].t) => {
