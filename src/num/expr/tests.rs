@@ -41,10 +41,7 @@ fn errors_say_where_and_what() {
         wrong("sin(v) + cso(t)"),
         "character 10: unknown function `cso`; did you mean `cos`?"
     );
-    assert_eq!(
-        wrong("2*w"),
-        "character 3: unknown variable `w`; did you mean `u`? (known here: u, v, t)"
-    );
+    assert_eq!(wrong("2*w"), "character 3: unknown variable `w` (known here: u, v, t)");
     assert_eq!(wrong("sin + 1"), "character 1: `sin` is a function; write `sin(...)`");
     assert_eq!(wrong("v(t+1)"), "character 1: `v` is no function; a product is written `v*(...)`");
     assert_eq!(
@@ -61,10 +58,7 @@ fn errors_say_where_and_what() {
     );
     assert_eq!(wrong("sin(1, 2)"), "character 6: too many arguments, `sin` takes 1");
     assert_eq!(wrong("2**3"), "character 2: `**` is no operator; a power is written `^`");
-    assert_eq!(
-        wrong("ü + 1 $"),
-        "character 1: unknown variable `ü`; did you mean `u`? (known here: u, v, t)"
-    );
+    assert_eq!(wrong("ü + 1 $"), "character 1: unknown variable `ü` (known here: u, v, t)");
     assert_eq!(wrong("1 ; 2"), "character 3: `;` means nothing in an expression");
     assert_eq!(wrong("1e999"), "character 1: `1e999` is no number");
     assert_eq!(wrong("."), "character 1: `.` is no number");
