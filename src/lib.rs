@@ -50,7 +50,7 @@
 //! | 5 | [`morph`], [`iso`], [`check`], [`picture`], [`recipe`] |
 //! | 4 | [`field`] |
 //! | 3 | [`element`] |
-//! | 2 | [`bvh`] |
+//! | 2 | [`bvh`], [`surface`] |
 //! | 1 | [`mesh`], [`grid`], [`warp`], [`weight`] |
 //! | 0 | [`num`], [`job`] |
 
