@@ -6,6 +6,8 @@ use super::watch::Watch;
 use super::{Making, npy, steps};
 use clap::Args;
 use fieldgraft::check::{Options, inspect};
+use fieldgraft::field::Shared;
+use fieldgraft::grid::Lattice;
 use fieldgraft::job::{self, Job};
 use fieldgraft::mesh::{check_output, write};
 use fieldgraft::recipe::{GridEntry, MesherEntry, RecipeError};
@@ -44,17 +46,55 @@ impl Convert {
     /// Converts.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
         let start = Instant::now();
-        let field_out = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy"));
+        let field_out =
+            self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy")) && !self.shells;
+        self.check_output(field_out)?;
+        let single = self.open(watch)?;
+        if self.shells {
+            return self.write_shells(&single, watch);
+        }
+        let prediction = predict_one(single.area(), &single.lattice);
+        if self.making.dry_run {
+            steps::tell_prediction(&prediction, &self.making, watch)?;
+        }
+        steps::refuse(&prediction, steps::limit(&self.making))?;
+        if self.making.dry_run {
+            return Ok(());
+        }
+        let (lattice, inputs) = (single.lattice, single.input().cloned().into_iter().collect());
+        let mut notes = vec![single.note().to_owned()];
+        let (field, found) = single.field(watch).map_err(plain)?;
+        found.iter().for_each(|n| watch.say(unnamed(n)));
+        notes.extend(found);
+        if field_out {
+            return npy::write(&self.output, &*field, lattice, self.making.force, watch);
+        }
+        let report = Report {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            recipe_sha256: sha256(b""),
+            arguments: steps::arguments(),
+            inputs,
+            threads: rayon::current_num_threads(),
+            seconds_shapes: start.elapsed().as_secs_f64(),
+            notes,
+            ..Report::default()
+        };
+        self.make(&field, lattice, report, start, watch)
+    }
+
+    /// Refuses options and outputs that cannot be, before any work.
+    fn check_output(&self, field_out: bool) -> Result<(), Failure> {
         if !(0.0..1.0).contains(&self.crumbs) {
             return Err(Failure::usage("--crumbs: expected a share of the volume, 0 to below 1"));
         }
-        if !self.making.dry_run {
-            if field_out {
-                npy::check_output(&self.output, self.making.force)?;
-            } else {
-                check_output(&self.output, self.making.force)?;
-            }
+        match field_out {
+            _ if self.making.dry_run => Ok(()),
+            true => npy::check_output(&self.output, self.making.force),
+            false => Ok(check_output(&self.output, self.making.force)?),
         }
+    }
+
+    fn open(&self, watch: &Watch) -> Result<Single, Failure> {
         let Some(entry) = self.reading.shapes(&[&self.input])?.pop() else {
             return Err(Failure::usage("nothing to convert"));
         };
@@ -65,26 +105,19 @@ impl Convert {
         };
         watch.stage("read");
         let single = Single::open("input", entry, &grid, Path::new("")).map_err(plain)?;
-        watch.say(single.note().trim_start_matches("input: "));
-        if self.shells {
-            return self.write_shells(&single, watch);
-        }
-        let prediction = predict_one(single.area(), &single.lattice);
-        let limit = steps::limit(&self.making);
-        if self.making.dry_run {
-            steps::tell_prediction(&prediction, &self.making, watch)?;
-            return steps::refuse(&prediction, limit);
-        }
-        steps::refuse(&prediction, limit)?;
-        let (lattice, input) = (single.lattice, single.input().cloned());
-        let mut notes = vec![single.note().to_owned()];
-        let (field, found) = single.field(watch).map_err(plain)?;
-        found.iter().for_each(|n| watch.say(n.trim_start_matches("input: ")));
-        notes.extend(found);
-        let seconds = start.elapsed().as_secs_f64();
-        if field_out {
-            return npy::write(&self.output, &*field, lattice, self.making.force, watch);
-        }
+        watch.say(unnamed(single.note()));
+        Ok(single)
+    }
+
+    /// Makes the mesh, writes it and its report.
+    fn make(
+        &self,
+        field: &Shared,
+        lattice: Lattice,
+        mut report: Report,
+        start: Instant,
+        watch: &Watch,
+    ) -> Result<(), Failure> {
         let work = Work {
             variant: "",
             t: 0.0,
@@ -99,22 +132,11 @@ impl Convert {
             self.write_mesh(&mut frame, mesh, watch)?;
         }
         steps::tell(&frame, watch);
-        let report = Report {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            recipe_sha256: sha256(b""),
-            arguments: steps::arguments(),
-            inputs: input.into_iter().collect(),
-            threads: rayon::current_num_threads(),
-            seconds_shapes: seconds,
-            seconds_total: start.elapsed().as_secs_f64(),
-            peak_memory_mb: run::peak_memory().map(|b| b as f64 / 1e6),
-            notes,
-            frames: vec![frame],
-            ..Report::default()
-        };
-        let beside = beside(&self.output);
+        report.frames.push(frame);
+        report.seconds_total = start.elapsed().as_secs_f64();
+        report.peak_memory_mb = run::peak_memory().map(|b| b as f64 / 1e6);
         // the mesh is there already; its report belongs to it and follows it
-        run::place_text(&beside, &report.to_json(), true)?;
+        run::place_text(&beside(&self.output), &report.to_json(), true)?;
         steps::finish(&report, &self.making, watch)
     }
 
@@ -154,6 +176,11 @@ impl Convert {
         }
         Ok(())
     }
+}
+
+/// A note without the name that only this command gave.
+fn unnamed(note: &str) -> &str {
+    note.strip_prefix("input: ").unwrap_or(note)
 }
 
 /// The report beside a mesh: `chair.stl` -> `chair.run.json`.

@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::steps::{self, Task};
 use super::watch::Watch;
 use clap::{Args, ValueEnum};
-use fieldgraft::recipe::{GridEntry, Recipe, RecipeError, Source, Times};
+use fieldgraft::recipe::{GridEntry, Recipe, RecipeError, Source, Times, read_text};
 use fieldgraft::run::Names;
 use std::path::{Component, Path, PathBuf};
 
@@ -50,9 +50,8 @@ fn times(text: &str) -> Result<Times, String> {
 impl Run {
     /// Makes everything.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
-        let text = std::fs::read_to_string(&self.recipe).map_err(|e| {
-            Failure::input(format!("{}: cannot be read: {e}", self.recipe.display()))
-        })?;
+        let text = read_text(&self.recipe)
+            .map_err(|why| Failure::input(format!("{}: {why}", self.recipe.display())))?;
         let (mut recipe, source) = parse(&text, &self.recipe, &self.set)?;
         self.adjust(&mut recipe)?;
         let names = self.names(&recipe, &source)?;

@@ -25,7 +25,7 @@ pub use between::Between;
 pub use gauge::Gauge;
 pub use mean::{ambiguous, average};
 pub use shape::{Form, Shape};
-pub use tessellate::tessellate;
+pub use tessellate::{middle_sheet, tessellate};
 
 use crate::num::{Aabb, Interval};
 use crate::warp::{Barr, Deform, WarpError};

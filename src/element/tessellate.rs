@@ -1,5 +1,5 @@
 use super::{Element, Shape};
-use crate::mesh::TriMesh;
+use crate::mesh::{TriMesh, weld};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -20,6 +20,25 @@ pub fn tessellate(element: &Element, segments: u32) -> Option<TriMesh> {
     }
     shell.faces = outline.faces();
     Some(shell)
+}
+
+/// The middle surface of a block or a prism across its thinnest axis, as one open sheet: what careless
+/// modelling leaves of a board. `None` for other shapes.
+pub fn middle_sheet(element: &Element, segments: u32) -> Option<TriMesh> {
+    let thin = (0..3).min_by(|&a, &b| element.half[a].total_cmp(&element.half[b]))?;
+    let flat = matches!(element.shape, Shape::Block) || thin == 2;
+    if !(matches!(element.shape, Shape::Block | Shape::Prism(_)) && flat) {
+        return None;
+    }
+    let mut sheet = tessellate(element, segments)?;
+    let local: Vec<DVec3> = sheet.points.iter().map(|&p| element.to_local(p)).collect();
+    sheet.faces.retain(|f| f.iter().all(|&v| local[v as usize][thin] > 1.0 - 1e-6));
+    for (p, mut q) in sheet.points.iter_mut().zip(local) {
+        q[thin] = 0.0;
+        *p = element.to_world(q);
+    }
+    // the far side's points are left without a face
+    Some(weld(&sheet))
 }
 
 /// Rings of equally many points stacked along z; the ends are flat or run into a point.

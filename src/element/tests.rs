@@ -191,3 +191,20 @@ fn bad_elements_are_refused() {
         (0..5).map(|i| DVec2::from_angle(f64::from(i) * 0.8 * std::f64::consts::PI)).collect();
     assert!(matches!(Shape::prism(&star), Err(ElementError::Polygon(_))));
 }
+
+#[test]
+fn middle_sheet_is_half_way_through_a_board() {
+    let board =
+        Element::block(DVec3::new(1.0, 2.0, 3.0), DVec3::new(20.0, 2.0, 30.0), DQuat::IDENTITY)
+            .unwrap();
+    let flat = middle_sheet(&board, 16).unwrap();
+    assert_eq!((flat.points.len(), flat.faces.len()), (4, 2));
+    assert!((flat.area() - 40.0 * 60.0).abs() < 1e-9);
+    assert!(flat.points.iter().all(|p| (p.y - 2.0).abs() < 1e-12));
+    // a bent board gives a bent sheet: an arc as long as the board
+    let bent = board.deformed(Deform::new(0.0, 1.0, 1.0).unwrap()).unwrap();
+    let sheet = middle_sheet(&bent, 256).unwrap();
+    assert!(sheet.faces.len() > 20 && (sheet.area() / 2400.0 - 1.0).abs() < 1e-3);
+    let rod = Element::rod(DVec3::ZERO, DVec3::Z, 1.0).unwrap();
+    assert!(middle_sheet(&rod, 16).is_none());
+}

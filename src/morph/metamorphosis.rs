@@ -60,7 +60,7 @@ impl Metamorphosis {
                     element,
                     maps,
                     lam: f.morph.at(t),
-                    offset: f.offset,
+                    offset: f.offset_at(t),
                     local: UNMEASURED,
                 }
             })

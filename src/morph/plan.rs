@@ -24,8 +24,23 @@ pub struct Feature {
     pub morph: Course,
     /// Weights of the frames; apart from the shapes' (paper 001, section 3.2).
     pub deform: Course,
-    /// Offset d of paper 001, eq. 6, mm; positive thickens.
+    /// Offset d of paper 001, eq. 6, mm; positive thickens. Of a pair it is reached half way, see
+    /// [`Feature::offset_at`].
     pub offset: f64,
+}
+
+impl Feature {
+    /// The offset o_i(t), mm: of a pair `4 u (1 - u)` of the whole, so that the ends are the inputs;
+    /// with fixed weights always the whole.
+    pub fn offset_at(&self, t: f64) -> f64 {
+        match &self.morph {
+            Course::Pair(ease) => {
+                let u = ease.at(t);
+                self.offset * 4.0 * u * (1.0 - u)
+            }
+            Course::Fixed(_) => self.offset,
+        }
+    }
 }
 
 /// How the weights of the shapes depend on time.

@@ -179,8 +179,18 @@ fn ends_give_the_inputs_back() {
 }
 
 #[test]
+fn the_offset_of_a_pair_is_whole_half_way_and_gone_at_the_ends() {
+    let p = plan(2, Inner::Linear, Blend::Maps);
+    let at = |t| p.features[0].offset_at(t);
+    assert_eq!([at(0.0), at(0.5), at(1.0)], [0.0, 2.0, 0.0]);
+    let group = plan(3, Inner::Linear, Blend::Maps);
+    assert_eq!(group.features[0].offset_at(0.0), 2.0);
+}
+
+#[test]
 fn pair_is_the_group_of_two() {
     let (mut pair, t) = (plan(2, Inner::Linear, Blend::Maps), 0.3);
+    pair.features.iter_mut().for_each(|f| f.offset = 0.0);
     let a = build(pair.clone()).unwrap().at(t, &Quiet).unwrap();
     let fixed = Course::Fixed(vec![7.0, 3.0]);
     pair.course = fixed.clone();

@@ -1,7 +1,7 @@
 //! Entries of `[[features]]`: elements on the shapes that correspond to each other.
 
+use super::primitive::{self, is_default};
 use super::shapes::ShapeEntry;
-use super::solid::{self, is_default};
 use super::source::join;
 use super::time::TimeFn;
 use super::{
@@ -46,8 +46,8 @@ pub struct FeatureMorph {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deform: Option<TimeFn>,
     /// Thickens the feature (thins it when negative), mm; paper 001, eq. 6.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub offset: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<f64>,
 }
 
 /// An element: exactly one shape, perhaps twisted, tapered or bent along its axis.
@@ -115,7 +115,7 @@ impl ElementEntry {
     /// # Errors
     /// None or several shapes.
     pub fn shape(&self, at: &str) -> Result<ElementShape<'_>, Problem> {
-        let primitive = solid::only(
+        let primitive = primitive::only(
             [
                 self.box_shape.as_ref().map(Primitive::Box),
                 self.cylinder.as_ref().map(Primitive::Cylinder),
@@ -127,7 +127,7 @@ impl ElementEntry {
         );
         match (&self.mesh, primitive) {
             (None, p) => {
-                p?.map(ElementShape::Primitive).ok_or_else(|| Problem::new(at, solid::NO_SHAPE))
+                p?.map(ElementShape::Primitive).ok_or_else(|| Problem::new(at, primitive::NO_SHAPE))
             }
             (Some(m), Ok(None)) => Ok(ElementShape::Mesh(m)),
             (Some(_), _) => Err(Problem::new(at, "`mesh` beside another shape; give one shape")),
@@ -145,14 +145,15 @@ impl ElementEntry {
                 }
             }
             ElementShape::Mesh(m) => {
-                solid::finite(&m.center.unwrap_or_default(), &format!("{at}.mesh.center"))?;
-                solid::finite(&m.rotate_deg, &format!("{at}.mesh.rotate_deg"))?;
+                primitive::finite(&m.center.unwrap_or_default(), &format!("{at}.mesh.center"))?;
+                primitive::finite(&m.rotate_deg, &format!("{at}.mesh.rotate_deg"))?;
                 let size = m.size.unwrap_or([1.0; 3]);
-                size.iter().try_for_each(|&s| solid::positive(s, &format!("{at}.mesh.size")))?;
+                size.iter()
+                    .try_for_each(|&s| primitive::positive(s, &format!("{at}.mesh.size")))?;
             }
         }
         let (twist, taper) = (self.twist_deg.unwrap_or(0.0), self.taper.unwrap_or(1.0));
-        solid::deform(twist, taper, self.bend_deg.unwrap_or(0.0), at)
+        primitive::deform(twist, taper, self.bend_deg.unwrap_or(0.0), at)
     }
 }
 
@@ -180,7 +181,7 @@ pub(super) fn validate(
 impl FeatureEntry {
     fn validate(&self, at: &str, shapes: &BTreeMap<String, ShapeEntry>) -> Result<(), Problem> {
         let (twist, taper) = (self.twist_deg.unwrap_or(0.0), self.taper.unwrap_or(1.0));
-        solid::deform(twist, taper, self.bend_deg.unwrap_or(0.0), at)?;
+        primitive::deform(twist, taper, self.bend_deg.unwrap_or(0.0), at)?;
         if self.on.is_empty() {
             let why = format!("feature `{}` stands on no shape", self.name);
             return Err(Problem::new(format!("{at}.on"), why));
@@ -193,7 +194,7 @@ impl FeatureEntry {
             }
             element.validate(&at)?;
         }
-        let offset = self.morph.as_ref().map_or(0.0, |m| m.offset);
-        solid::finite(&[offset], &format!("{at}.morph.offset"))
+        let offset = self.morph.as_ref().and_then(|m| m.offset).unwrap_or(0.0);
+        primitive::finite(&[offset], &format!("{at}.morph.offset"))
     }
 }

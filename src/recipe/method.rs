@@ -1,6 +1,6 @@
 //! `[morph]` and `[[hybrids]]`: which method, between what, with which weights.
 
-use super::solid::{finite, is_default, positive};
+use super::primitive::{finite, is_default, positive};
 use super::source::join;
 use super::time::Times;
 use super::value::{Auto, PlainOr};
@@ -34,6 +34,9 @@ pub struct MorphEntry {
     /// The morphing function inside graft and group; by default `grow`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inner: Option<InnerEntry>,
+    /// Offset of the features that name none of their own, mm; paper 001, eq. 6.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<f64>,
     /// How distances to the features become weights; by default `smooth`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weighting: Option<PlainOr<WeightingKind, WeightingEntry>>,
@@ -188,6 +191,7 @@ impl MorphEntry {
             among: of.among.clone(),
             blend: self.blend.or(base.blend),
             inner: self.inner.or(base.inner),
+            offset: self.offset.or(base.offset),
             weighting: self.weighting.clone().or_else(|| base.weighting.clone()),
             frames: self.frames.clone().or_else(|| base.frames.clone()),
             t: self.t.clone().or_else(|| base.t.clone()),

@@ -9,6 +9,7 @@ mod json;
 mod method;
 mod near;
 mod output;
+mod primitive;
 mod shapes;
 mod solid;
 mod source;
@@ -22,15 +23,13 @@ pub use method::{
 };
 pub use near::{did_you_mean, nearest};
 pub use output::{GridEntry, MesherEntry, OutputEntry};
+pub use primitive::{BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Primitive, PrismShape};
 pub use shapes::{
     LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,
 };
-pub use solid::{
-    BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Mirror, Op, Part, Primitive, PrismShape,
-    Solid, SolidKind,
-};
+pub use solid::{Mirror, Op, Part, Solid, SolidKind};
 pub(crate) use source::join;
-pub use source::{Problem, RecipeError, Source};
+pub use source::{Problem, RecipeError, Source, read_text};
 pub use time::{TimeFn, Times};
 pub use value::{Auto, PlainOr};
 
@@ -51,10 +50,10 @@ pub struct Recipe {
     /// Version of the format: 1.
     pub version: u32,
     /// What the recipe is called.
-    #[serde(default, skip_serializing_if = "solid::is_default")]
+    #[serde(default, skip_serializing_if = "primitive::is_default")]
     pub name: String,
     /// How finely space is sampled.
-    #[serde(default, skip_serializing_if = "solid::is_default")]
+    #[serde(default, skip_serializing_if = "primitive::is_default")]
     pub grid: GridEntry,
     /// The shapes, by name.
     pub shapes: BTreeMap<String, ShapeEntry>,
@@ -62,13 +61,13 @@ pub struct Recipe {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub features: Vec<FeatureEntry>,
     /// How the shapes become one.
-    #[serde(default, skip_serializing_if = "solid::is_default")]
+    #[serde(default, skip_serializing_if = "primitive::is_default")]
     pub morph: MorphEntry,
     /// Several results of one recipe; each overrides what it names of `[morph]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hybrids: Vec<MorphEntry>,
     /// What is written.
-    #[serde(default, skip_serializing_if = "solid::is_default")]
+    #[serde(default, skip_serializing_if = "primitive::is_default")]
     pub output: OutputEntry,
 }
 

@@ -7,7 +7,8 @@ pub fn nearest<'a>(word: &str, among: impl IntoIterator<Item = &'a str>) -> Opti
     among
         .into_iter()
         .map(|c| (distance(&lower, &c.to_lowercase()), c))
-        .filter(|&(d, _)| d <= most)
+        // a word of which nothing is left was not meant
+        .filter(|&(d, _)| d <= most && d < lower.chars().count())
         .min_by_key(|&(d, _)| d)
         .map(|(_, c)| c)
 }

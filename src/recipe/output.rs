@@ -1,7 +1,7 @@
 //! `[grid]` and `[output]`: how finely, and into which files.
 
 use super::Problem;
-use super::solid::{finite, is_default, positive};
+use super::primitive::{finite, is_default, positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,6 @@
 //! Entries of `[shapes]`.
 
-use super::solid::{finite, is_default, positive};
+use super::primitive::{finite, is_default, positive};
 use super::value::PlainOr;
 use super::{Problem, Solid};
 use schemars::JsonSchema;

@@ -2,6 +2,7 @@
 
 use super::near::did_you_mean;
 use serde::de::DeserializeOwned;
+use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
@@ -48,6 +49,25 @@ fn place(file: &Path, line: &Option<usize>) -> String {
 
 fn colon(at: &str) -> String {
     if at.is_empty() { String::new() } else { format!("{at}: ") }
+}
+
+/// Largest recipe or solid that is read, bytes.
+const LARGEST: u64 = 16 << 20;
+
+/// The text of a recipe or solid file.
+///
+/// # Errors
+/// What keeps it from being read, in words: missing, no regular file, too large, not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, String> {
+    let fail = |e: std::io::Error| format!("cannot be read: {e}");
+    let about = fs::metadata(path).map_err(fail)?;
+    if !about.is_file() {
+        return Err("is no regular file".to_owned());
+    }
+    if about.len() > LARGEST {
+        return Err(format!("has {} bytes; at most {LARGEST} are read", about.len()));
+    }
+    fs::read_to_string(path).map_err(fail)
 }
 
 /// A text, its name, and where its keys stand.

@@ -90,11 +90,10 @@ pub fn make(
         MesherEntry::Sharp => extract_sharp(&sampling.bricks, &*field, job),
         MesherEntry::Preview => extract(&sampling.bricks, Mesher::SurfaceNets, job),
     })?;
-    if work.verify {
-        let search = || undecided(&*field, &sampling, DECIDE_LEVELS, job);
-        let found = timed(&mut r.seconds.check, search)?;
-        r.undecided_cells = Some(found.left + found.missed);
-    }
+    let levels = if work.verify { DECIDE_LEVELS } else { 0 };
+    let search = || undecided(&*field, &sampling, levels, job);
+    let found = timed(&mut r.seconds.undecided, search)?;
+    r.undecided_cells = Some(found.left + found.missed);
     drop(sampling);
     if mesh.faces.is_empty() {
         let why = "nothing is inside: the result is empty at this time; try another method, inner \

@@ -13,7 +13,9 @@ pub struct Seconds {
     pub sample: f64,
     /// Making triangles.
     pub mesh: f64,
-    /// Counting what samples cannot show, crumbs, the check.
+    /// Counting the cells in which the samples cannot exclude a surface.
+    pub undecided: f64,
+    /// Crumbs, the check.
     pub check: f64,
     /// Writing the mesh and reading it back.
     pub write: f64,

@@ -2,7 +2,7 @@
 
 use super::elements;
 use super::place::Similarity;
-use crate::element::{Element, tessellate};
+use crate::element::{Element, Shape, middle_sheet, tessellate};
 use crate::field::csg::Join;
 use crate::field::solid::Part as SolidPart;
 use crate::mesh::TriMesh;
@@ -13,7 +13,14 @@ use glam::DAffine3;
 /// What a shape is made of.
 pub(super) enum Body {
     Mesh(TriMesh),
-    Solid(Vec<SolidPart>),
+    Solid(Vec<Piece>),
+}
+
+/// A part of a solid.
+pub(super) struct Piece {
+    pub part: SolidPart,
+    /// Written as a bare sheet among raw shells.
+    sheet: bool,
 }
 
 /// Sides of a round section when a solid is taken as triangles.
@@ -26,13 +33,17 @@ impl Body {
         for (i, part) in solid.parts.iter().enumerate() {
             let at = if at.is_empty() { format!("parts[{i}]") } else { format!("{at}.parts[{i}]") };
             let (element, round) = elements::part(part, &at)?;
+            if part.sheet && !matches!(element.shape, Shape::Block | Shape::Prism(_)) {
+                return Err(Problem::new(at, "only a box or a prism can be a sheet"));
+            }
             let join = match part.op {
                 Op::Add => Join::Add,
                 Op::Cut => Join::Cut,
                 Op::Blend => Join::Blend(part.blend.unwrap_or(0.0)),
             };
             for element in images(element, part.mirror) {
-                parts.push(SolidPart { element, round, join });
+                let sheet = part.sheet;
+                parts.push(Piece { part: SolidPart { element, round, join }, sheet });
             }
         }
         Ok(Self::Solid(parts))
@@ -50,7 +61,8 @@ impl Body {
                 Self::Mesh(mesh)
             }
             Self::Solid(parts) => {
-                Self::Solid(parts.into_iter().map(|p| moved_part(p, by)).collect())
+                let moved = |p: Piece| Piece { part: moved_part(p.part, by), sheet: p.sheet };
+                Self::Solid(parts.into_iter().map(moved).collect())
             }
         }
     }
@@ -63,16 +75,26 @@ impl Body {
         }
     }
 
-    /// The triangles it is made of: the mesh itself, or the raw shells of the parts that are not
-    /// cut away.
+    /// The triangles it is made of: the mesh itself, or closed shells of the parts that are not cut
+    /// away.
     pub fn shells(&self) -> TriMesh {
+        self.triangles(false)
+    }
+
+    /// [`Body::shells`] with the parts that are sheets left open.
+    pub fn raw_shells(&self) -> TriMesh {
+        self.triangles(true)
+    }
+
+    fn triangles(&self, bare: bool) -> TriMesh {
         match self {
             Self::Mesh(mesh) => mesh.clone(),
             Self::Solid(parts) => {
                 let mut all = TriMesh::default();
-                for p in parts.iter().filter(|p| p.join != Join::Cut) {
+                for Piece { part, sheet } in parts.iter().filter(|p| p.part.join != Join::Cut) {
+                    let outline = if bare && *sheet { middle_sheet } else { tessellate };
                     // parts of solids are primitives, all of which have an outline
-                    if let Some(shell) = tessellate(&p.element, SEGMENTS) {
+                    if let Some(shell) = outline(&part.element, SEGMENTS) {
                         all.append(&shell);
                     }
                 }

@@ -97,8 +97,7 @@ fn mesh(
 fn solid_file(path: &Path, at: &str) -> Result<(Body, Option<Input>, String), Problem> {
     let at = format!("{at}.solid");
     let fail = |e: String| Problem::new(&at, e);
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| fail(format!("{}: cannot be read: {e}", path.display())))?;
+    let text = recipe::read_text(path).map_err(|why| fail(format!("{}: {why}", path.display())))?;
     let solid = recipe::parse_solid(&text, path).map_err(|e| fail(e.to_string()))?;
     let body = Body::solid(&solid, "").map_err(|e| fail(format!("{}: {e}", path.display())))?;
     let input = digest(path).map_err(|e| fail(format!("{}: {e}", path.display())))?;
@@ -132,6 +131,7 @@ pub(super) fn exact(
     match placed.body {
         Body::Solid(parts) => {
             let at = join("shapes", &placed.name);
+            let parts: Vec<_> = parts.into_iter().map(|p| p.part).collect();
             let solid = Assembly::new(&parts).map_err(|e| Problem::new(at, e.to_string()))?;
             Ok((Arc::new(solid), Vec::new()))
         }

@@ -11,6 +11,7 @@ mod live;
 mod mesh_element;
 mod place;
 mod plan;
+mod rows;
 mod single;
 mod variant;
 

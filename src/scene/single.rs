@@ -69,7 +69,7 @@ impl Single {
 
     /// The triangles it is made of: the mesh itself, or the raw shells of a solid's parts.
     pub fn shells(&self) -> TriMesh {
-        self.placed.body.shells()
+        self.placed.body.raw_shells()
     }
 
     /// Its field, and what was found on the way.

@@ -62,9 +62,15 @@ impl Variant {
         build(plan)
     }
 
-    /// The weighted mean of the shapes' volumes at `t`, mm³.
+    /// The weighted mean of the shapes' volumes at `t`, mm³; with features, the mean over them.
     pub fn mean_volume(&self, t: f64) -> f64 {
-        self.plan.course.at(t).iter().zip(&self.volumes).map(|(w, v)| w * v).sum()
+        let mean =
+            |c: &Course| -> f64 { c.at(t).iter().zip(&self.volumes).map(|(w, v)| w * v).sum() };
+        if self.plan.features.is_empty() {
+            return mean(&self.plan.course);
+        }
+        let sum: f64 = self.plan.features.iter().map(|f| mean(&f.morph)).sum();
+        sum / self.plan.features.len() as f64
     }
 }
 

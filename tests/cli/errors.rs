@@ -40,6 +40,7 @@ fn a_missing_file() {
     let folder = folder();
     folder.run(&["check", "gone.obj"]).fails(3, &["gone.obj", "cannot"]);
     folder.run(&["run", "gone.toml"]).fails(3, &["gone.toml"]);
+    folder.run(&["run", "."]).fails(3, &["no regular file"]);
     folder.run(&["morph", "low.obj", "gone.stl", "-o", "x.stl"]).fails(3, &["gone.stl"]);
     changed("tall.obj", "tal.obj")
         .run(&["run", "r.toml"])
