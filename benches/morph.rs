@@ -30,14 +30,10 @@ fn data(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(path)
 }
 
-/// The mesh of one of our chairs, 2 mm fine.
+/// One of our chairs as furniture files are: the raw shells of its parts.
 fn chair(name: &str) -> Tried<TriMesh> {
     let entry: ShapeEntry = toml::from_str(&format!("solid = '{name}.toml'"))?;
-    let grid = GridEntry { voxel: Some(2.0), ..GridEntry::default() };
-    let single = Single::open(name, entry, &grid, &data("chairs"))?;
-    let lattice = single.lattice;
-    let (field, _) = single.field(&Quiet)?;
-    Ok(extract(&sample(&*field, lattice, &Quiet)?.bricks, Mesher::Cone, &Quiet)?)
+    Ok(Single::open(name, entry, &GridEntry::default(), &data("chairs"))?.shells())
 }
 
 /// Writes the chairs as STL files and the recipes of the pair and the family that read them.
@@ -45,8 +41,7 @@ fn prepare(folder: &Path) -> Tried<()> {
     for name in CHAIRS {
         write(&folder.join(format!("{name}.stl")), &chair(name)?, "", true)?;
     }
-    let text = fs::read_to_string(data("recipes/chair-family.toml"))?;
-    let mut family = text;
+    let mut family = fs::read_to_string(data("recipes/chair-family.toml"))?;
     for name in CHAIRS {
         let solid = format!("solid = \"../chairs/{name}.toml\"");
         family = family.replace(&solid, &format!("mesh = \"{name}.stl\""));
@@ -64,10 +59,10 @@ fn prepare(folder: &Path) -> Tried<()> {
 
 fn open(recipe: &Path, cells: u32) -> Tried<Scene> {
     let text = fs::read_to_string(recipe)?;
-    let (mut recipe_, source) = Recipe::parse(&text, recipe)?;
-    recipe_.grid.resolution = Some(cells);
+    let (mut all, source) = Recipe::parse(&text, recipe)?;
+    all.grid.resolution = Some(cells);
     let beside = recipe.parent().ok_or("no folder")?;
-    Ok(Draft::open(recipe_, source, beside, &Quiet)?.build(&Quiet)?)
+    Ok(Draft::open(all, source, beside, &Quiet)?.build(&Quiet)?)
 }
 
 /// The first hybrid's field.
