@@ -36,16 +36,11 @@ fn chair(name: &str) -> Tried<TriMesh> {
     Ok(Single::open(name, entry, &GridEntry::default(), &data("chairs"))?.shells())
 }
 
-/// Writes the chairs as STL files and the recipes of the pair and the family that read them.
+/// Writes the recipes of the pair and the family, which read the chairs' mesh files.
 fn prepare(folder: &Path) -> Tried<()> {
-    for name in CHAIRS {
-        write(&folder.join(format!("{name}.stl")), &chair(name)?, "", true)?;
-    }
-    let mut family = fs::read_to_string(data("recipes/chair-family.toml"))?;
-    for name in CHAIRS {
-        let solid = format!("solid = \"../chairs/{name}.toml\"");
-        family = family.replace(&solid, &format!("mesh = \"{name}.stl\""));
-    }
+    let chairs = data("chairs").display().to_string();
+    let family =
+        fs::read_to_string(data("recipes/chair-family.toml"))?.replace("../chairs", &chairs);
     let (shapes, _) = family.split_once("[morph]").ok_or("no [morph] in the family's recipe")?;
     let pair = "[morph]\nmethod = 'graft'\nbetween = ['windsor', 'plank']\nt = [0.5]\n";
     fs::write(folder.join("pair.toml"), format!("{shapes}{pair}"))?;
