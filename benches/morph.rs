@@ -9,10 +9,10 @@ use fieldgraft::field::{Field, Shared, mesh::MeshField, sample::sample, sampled:
 use fieldgraft::grid::Lattice;
 use fieldgraft::iso::{Mesher, extract};
 use fieldgraft::job::Quiet;
-use fieldgraft::mesh::{Assume, TriMesh, read, write};
-use fieldgraft::recipe::{GridEntry, Recipe, ShapeEntry};
+use fieldgraft::mesh::{Assume, read, write};
+use fieldgraft::recipe::Recipe;
 use fieldgraft::run::peak_memory;
-use fieldgraft::scene::{Draft, Scene, Single};
+use fieldgraft::scene::{Draft, Scene};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -28,12 +28,6 @@ const CHILD: &str = "FIELDGRAFT_BENCH_CHILD";
 
 fn data(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(path)
-}
-
-/// One of our chairs as furniture files are: the raw shells of its parts.
-fn chair(name: &str) -> Tried<TriMesh> {
-    let entry: ShapeEntry = toml::from_str(&format!("solid = '{name}.toml'"))?;
-    Ok(Single::open(name, entry, &GridEntry::default(), &data("chairs"))?.shells())
 }
 
 /// Writes the recipes of the pair and the family, which read the chairs' mesh files.
@@ -115,7 +109,7 @@ fn stages(c: &mut Criterion, folder: &Path) {
     let mut group = c.benchmark_group("stage");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     group.warm_up_time(Duration::from_millis(1)).measurement_time(Duration::from_secs(1));
-    let mesh = must(read(&folder.join("windsor.stl"), Assume::default()).map_err(Into::into)).mesh;
+    let mesh = must(read(&data("chairs/windsor.obj"), Assume::default()).map_err(Into::into)).mesh;
     group.bench_function("mesh to field", |b| {
         b.iter(|| MeshField::new(&mesh, &Default::default(), &Quiet));
     });
