@@ -24,7 +24,8 @@ pub use method::{
 pub use output::{GridEntry, MesherEntry, OutputEntry};
 pub use primitive::{BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Primitive, PrismShape};
 pub use shapes::{
-    LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,
+    CurveEntry, LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, SkinEntry, ThickenEntry,
+    ThickenWhich, UpAxis,
 };
 pub use solid::{Mirror, Op, Part, Solid, SolidKind};
 pub(crate) use source::join;
