@@ -106,12 +106,17 @@ pub fn run(
                 crumbs: variant.crumbs,
                 verify: settings.verify,
             };
-            let made = match variant.morph(t, job) {
+            let start = Instant::now();
+            let made = variant.morph(t, job);
+            // a shape that moves is made anew
+            let fresh = start.elapsed().as_secs_f64();
+            let made = match made {
                 Ok(morph) => make(&work, &|job| morph.at(t, job), job)?,
                 Err(MorphError::Cancelled(stop)) => return Err(stop.into()),
                 Err(e) => FrameResult::failed(&work, e.to_string()),
             };
             let mut frame = made.report;
+            frame.seconds.morph += fresh;
             frame.mean_volume(variant.mean_volume(t));
             if let Some(mesh) = &made.mesh {
                 put(&mut frame, mesh, settings, job)?;
