@@ -61,8 +61,8 @@ impl Convert {
         if self.making.dry_run {
             return Ok(());
         }
-        let (lattice, inputs) = (single.lattice, single.input().cloned().into_iter().collect());
-        let mut notes = vec![single.note().to_owned()];
+        let (lattice, inputs) = (single.lattice, single.inputs().to_vec());
+        let mut notes = single.notes().to_vec();
         let (field, found) = single.field(watch).map_err(plain)?;
         found.iter().for_each(|n| watch.say(unnamed(n)));
         notes.extend(found);
@@ -105,7 +105,7 @@ impl Convert {
         };
         watch.stage("read");
         let single = Single::open("input", entry, &grid, Path::new("")).map_err(plain)?;
-        watch.say(unnamed(single.note()));
+        single.notes().iter().for_each(|n| watch.say(unnamed(n)));
         Ok(single)
     }
 
@@ -157,7 +157,7 @@ impl Convert {
     }
 
     fn write_shells(&self, single: &Single, watch: &Watch) -> Result<(), Failure> {
-        let mesh = single.shells();
+        let mesh = single.shells().map_err(plain)?;
         if self.making.dry_run {
             return watch.put(&format!("triangles  {}", mesh.faces.len()));
         }
