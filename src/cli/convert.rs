@@ -1,4 +1,4 @@
-//! `convert`: any mesh, or a solid, into a clean watertight mesh.
+//! `convert`: any mesh, solid or surface, into a clean watertight mesh.
 
 use super::failure::Failure;
 use super::inputs::{self, Fineness, Reading};
@@ -19,7 +19,7 @@ use std::time::Instant;
 /// What to convert.
 #[derive(Args)]
 pub struct Convert {
-    /// A mesh (OBJ, STL, PLY, GLB, glTF) or a solid (`.toml`)
+    /// A mesh (OBJ, STL, PLY, GLB, glTF), or a solid or surface (`.toml`)
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// A mesh (STL, OBJ, PLY, GLB), or a field: the dense samples as `.npy`, with a `.json` beside
@@ -29,7 +29,8 @@ pub struct Convert {
     reading: Reading,
     #[command(flatten)]
     fineness: Fineness,
-    /// Write the triangles as they are: the mesh itself, or the raw shells of a solid's parts
+    /// Write the triangles as they are: the mesh itself, the raw shells of a solid's parts, or a
+    /// surface without its thickness
     #[arg(long, conflicts_with_all = ["resolution", "voxel", "thicken", "sign"])]
     shells: bool,
     /// Drop loose pieces below this share of the volume
@@ -179,7 +180,7 @@ impl Convert {
 }
 
 /// A note without the name that only this command gave.
-fn unnamed(note: &str) -> &str {
+pub fn unnamed(note: &str) -> &str {
     note.strip_prefix("input: ").unwrap_or(note)
 }
 

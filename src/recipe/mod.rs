@@ -30,9 +30,9 @@ pub use shapes::{
 };
 pub use solid::{Mirror, Op, Part, Solid, SolidKind};
 pub(crate) use source::join;
-pub use source::{Problem, RecipeError, Source, read_text};
+pub use source::{Problem, RecipeError, Source, kind, read_text};
 pub use surface::{SurfaceEntry, SurfaceMethod, parse_surface, surface_schema};
-pub use time::{TimeFn, Times};
+pub use time::{TimeFn, Times, numbers};
 pub use value::{Auto, PlainOr};
 
 use schemars::JsonSchema;

@@ -147,12 +147,12 @@ impl Skinned {
         // a motion may fail at some times; those frames will say so
         match first {
             Some(e) if all.outlines.is_empty() => Err(e.into()),
-            _ => all.check().map(|()| all),
+            _ => Ok(all),
         }
     }
 
     /// Refuses sheets and curves without a thickness.
-    fn check(&self) -> Result<(), SkinnedError> {
+    pub fn encloses(&self) -> Result<(), SkinnedError> {
         if self.how.skin.thickness.is_some() {
             return Ok(());
         }
@@ -168,11 +168,6 @@ impl Skinned {
             }
             Still::Surface(_) => Ok(()),
         }
-    }
-
-    /// What it is.
-    pub fn object(&self) -> &Parametric {
-        &self.object
     }
 
     /// Where it stands: the similarity from the file's space to ours.

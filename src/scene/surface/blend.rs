@@ -14,13 +14,7 @@ pub fn blend(e: &entry::Blend) -> Result<SurfaceFile, Problem> {
         return Err(Problem::new("exact", "the closed form stands alone; remove `beside`"));
     }
     let spec = BlendSpec {
-        handles: Handles {
-            beta: e.beta,
-            gamma: e.gamma,
-            lambda: e.lambda,
-            rho: e.rho,
-            eta: e.eta,
-        },
+        handles: Handles { beta: e.beta, gamma: e.gamma, lambda: e.lambda, rho: e.rho, eta: e.eta },
         terms: e.terms,
         basis: match e.basis {
             entry::Basis::Bubble => Basis::Bubble,

@@ -11,7 +11,7 @@ mod tests;
 
 use super::{Input, SceneError};
 use crate::recipe::surface::{Averaging, Kind, PdeMethod};
-use crate::recipe::{Problem, SurfaceEntry, SurfaceMethod};
+use crate::recipe::{Problem, RecipeError, Source, SurfaceEntry, SurfaceMethod};
 use crate::surface::nurbs::{Curve, CurveMorph};
 use crate::surface::pde::{PdeMorph, PdeSurface};
 use crate::surface::{Motion, Surface, SurfaceError};
@@ -82,6 +82,8 @@ pub struct SurfaceFile {
     pub exact: Option<Parametric>,
     /// Where its spine comes from, for PDE surfaces.
     pub spine: Option<Spine>,
+    /// The text of this file.
+    pub source: Arc<Source>,
 }
 
 /// What has a spine.
@@ -105,7 +107,8 @@ impl Spine {
         };
         let steps = steps.max(1);
         let at = |i: usize| i as f64 / steps as f64;
-        let line = |p: &crate::surface::pde::Solution| (0..=steps).map(|i| p.spine(at(i))).collect();
+        let line =
+            |p: &crate::surface::pde::Solution| (0..=steps).map(|i| p.spine(at(i))).collect();
         Ok(frame.patches.iter().map(line).collect())
     }
 }
@@ -114,6 +117,11 @@ impl Spine {
 const LOOKS: usize = 65;
 
 impl SurfaceFile {
+    /// Adds file and line to what went wrong at some time.
+    pub fn locate(&self, e: SurfaceError) -> RecipeError {
+        self.source.locate(problem(e))
+    }
+
     /// The largest distance (mm) at `t` between points of the surface and of its exact form with the
     /// same parameters; nothing where no exact form is known.
     ///
@@ -158,7 +166,7 @@ pub fn open(path: &Path) -> Result<SurfaceFile, SceneError> {
         SurfaceEntry::Dynamic(e) => dynamic::dynamic(e),
     };
     let mut file = file.map_err(|p| opened.locate(p))?;
-    file.inputs = reader.inputs;
+    (file.inputs, file.source) = (reader.inputs, opened.source);
     Ok(file)
 }
 
@@ -188,7 +196,7 @@ pub fn between(a: &Path, b: &Path, method: SurfaceMethod) -> Result<SurfaceFile,
         SurfaceMethod::NurbsWeighted => nurbs::between(&from, &to, Averaging::Weighted),
     };
     let mut file = file?;
-    file.inputs = reader.inputs;
+    (file.inputs, file.source) = (reader.inputs, from.source);
     Ok(file)
 }
 
@@ -204,6 +212,7 @@ fn plain(kind: Kind, object: Parametric, story: String) -> SurfaceFile {
         duration: None,
         exact: None,
         spine: None,
+        source: Arc::new(Source::unwritten()),
     }
 }
 

@@ -180,7 +180,8 @@ fn finish(morph: Morph, by: entry::Averaging, count: usize) -> SurfaceFile {
             plain(Kind::NurbsMorph, Parametric::CurveMotion(Arc::new(m)), story)
         }
         Morph::Surfaces(m) => {
-            let [u, v] = m.targets().first().map_or([0; 2], |s| s.knots().each_ref().map(|k| k.count()));
+            let [u, v] =
+                m.targets().first().map_or([0; 2], |s| s.knots().each_ref().map(|k| k.count()));
             let story = format!(
                 "{by} morph of {count} rational B-spline surfaces; the common net is {v} rows of {u}"
             );
@@ -235,12 +236,7 @@ fn distances(
 }
 
 /// Pulls the share of one target; the others keep their proportions to each other.
-fn pull(
-    morph: &Morph,
-    distance: &mut [Rows],
-    e: &entry::Impact,
-    at: &str,
-) -> Result<(), Problem> {
+fn pull(morph: &Morph, distance: &mut [Rows], e: &entry::Impact, at: &str) -> Result<(), Problem> {
     let wrong = |key: &str, why: String| Err(Problem::new(format!("{at}.{key}"), why));
     if !(e.to > 0.0 && e.to < 1.0) {
         return wrong("to", format!("got {}; expected more than 0 and less than 1", e.to));

@@ -2,11 +2,10 @@
 
 use super::super::{Input, SceneError, sha256};
 use crate::recipe::surface::Kind;
-use crate::recipe::{
-    Problem, RecipeError, Source, SurfaceEntry, parse_surface, read_text,
-};
+use crate::recipe::{Problem, RecipeError, Source, SurfaceEntry, parse_surface, read_text};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Most files that one may name.
 const MOST: usize = 64;
@@ -14,7 +13,7 @@ const MOST: usize = 64;
 /// A file as it was read.
 pub struct Opened {
     pub entry: SurfaceEntry,
-    source: Source,
+    pub source: Arc<Source>,
     /// As it was named.
     pub path: PathBuf,
     /// Without links and dots, to tell files apart.
@@ -44,7 +43,8 @@ impl Reader {
         if !self.inputs.iter().any(|i| i.file == file) {
             self.inputs.push(Input { file, sha256: sha256(text.as_bytes()) });
         }
-        Ok(Opened { entry, source, path: path.to_owned(), real: fs::canonicalize(path).ok() })
+        let real = fs::canonicalize(path).ok();
+        Ok(Opened { entry, source: Arc::new(source), path: path.to_owned(), real })
     }
 
     /// Reads a file that another names at a key, relative to it; it has to be of that kind.
@@ -62,7 +62,9 @@ impl Reader {
         let path = by.path.parent().unwrap_or(Path::new("")).join(path);
         let shown = path.display();
         if fs::canonicalize(&path).ok().is_some_and(|p| by.real.as_ref() == Some(&p)) {
-            return Err(fail(format!("{shown} is this file; a morph cannot be made of itself")).into());
+            return Err(
+                fail(format!("{shown} is this file; a morph cannot be made of itself")).into()
+            );
         }
         if let Err(why) = fs::metadata(&path) {
             return Err(fail(format!("{shown} cannot be read: {why}")).into());
