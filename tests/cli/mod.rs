@@ -8,5 +8,7 @@ mod errors;
 mod make;
 /// The recipes and solids that ship with the crate.
 mod shipped;
+/// `surface`: files of every kind, their samples and meshes, and what is wrong with them.
+mod surface;
 /// `schema`, `completions`, `man`.
 mod texts;
