@@ -10,5 +10,7 @@ mod make;
 mod shipped;
 /// `surface`: files of every kind, their samples and meshes, and what is wrong with them.
 mod surface;
+/// Surface files as recipes, and as shapes among others.
+mod surfaces;
 /// `schema`, `completions`, `man`.
 mod texts;
