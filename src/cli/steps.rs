@@ -136,6 +136,7 @@ pub fn finish(report: &Report, making: &Making, watch: &Watch) -> Result<(), Fai
 
 /// One or two lines on a frame.
 pub fn tell(f: &FrameReport, watch: &Watch) {
+    f.notes.iter().for_each(|n| watch.say(n));
     let what = if f.hybrid.is_empty() {
         format!("t {}", run::time_word(f.t))
     } else {

@@ -76,6 +76,7 @@ fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
         offset: 2.0,
     };
     Plan {
+        scheme: Scheme::Blend,
         shapes,
         features: vec![
             feature("top", (0..k).map(|j| block(tops[j], sizes[j], turns[j])).collect()),

@@ -106,11 +106,13 @@ pub fn run(
                 crumbs: variant.crumbs,
                 verify: settings.verify,
             };
-            let made = match variant.morph(t) {
-                Ok(morph) => make(&work, &|job| morph.at(t, job), job)?,
-                Err(e) => FrameResult::failed(&work, e.to_string()),
+            let (made, notes) = match variant.morph(t) {
+                Ok(morph) => (make(&work, &|job| morph.at(t, job), job)?, morph.notes()),
+                Err(e) => (FrameResult::failed(&work, e.to_string()), Vec::new()),
             };
             let mut frame = made.report;
+            frame.notes = notes.into_iter().filter(|n| !report.notes.contains(n)).collect();
+            report.notes.extend(frame.notes.iter().cloned());
             frame.mean_volume(variant.mean_volume(t));
             if let Some(mesh) = &made.mesh {
                 put(&mut frame, mesh, settings, job)?;

@@ -61,6 +61,9 @@ pub struct FrameReport {
     pub volume_kept: Option<f64>,
     /// The state of the mesh.
     pub health: Option<Health>,
+    /// What the method found at this frame and had not said before; goes to the run's notes.
+    #[serde(skip)]
+    pub notes: Vec<String>,
 }
 
 impl FrameReport {

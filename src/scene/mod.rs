@@ -12,6 +12,7 @@ mod mesh_element;
 mod place;
 mod plan;
 mod rows;
+mod scheme;
 mod single;
 pub mod surface;
 mod variant;

@@ -6,6 +6,7 @@ use crate::element::Element;
 use crate::morph::{Course, Frames, Morph, MorphError, Plan, build};
 use crate::recipe::{MethodEntry, MorphEntry, Problem, Recipe};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A hybrid to make.
 pub struct Variant {
@@ -20,6 +21,8 @@ pub struct Variant {
     /// Volumes of its shapes, mm³, in the order of the plan.
     volumes: Vec<f64>,
     plan: Plan,
+    /// Made of the plan, once: methods keep what they work out for one time for the next.
+    morph: Arc<dyn Morph>,
     /// Whether the frames are those of the shape that weighs most.
     dominant: bool,
 }
@@ -37,7 +40,7 @@ impl Variant {
         let live: Vec<&LiveShape> =
             names.iter().filter_map(|n| shapes.iter().find(|s| s.name == *n)).collect();
         let plan = plan::plan(entry, method, &live, meshes, recipe, at)?;
-        build(plan.clone()).map_err(|e| Problem::new(at, e.to_string()))?;
+        let morph = build(plan.clone()).map_err(|e| Problem::new(at, e.to_string()))?.into();
         let loose = matches!(method, MethodEntry::Graft | MethodEntry::Group);
         Ok(Self {
             name: entry.name.clone(),
@@ -47,6 +50,7 @@ impl Variant {
             volumes: live.iter().map(|s| s.volume).collect(),
             dominant: entry.frames.as_deref() == Some("dominant"),
             plan,
+            morph,
         })
     }
 
@@ -55,10 +59,11 @@ impl Variant {
     /// # Errors
     /// A plan that cannot be carried out; checked before, so not in a scene.
     pub fn morph(&self, t: f64) -> Result<Box<dyn Morph>, MorphError> {
-        let mut plan = self.plan.clone();
-        if self.dominant {
-            plan.frames = Frames::Of(heaviest(&plan, t));
+        if !self.dominant {
+            return Ok(Box::new(self.morph.clone()));
         }
+        let mut plan = self.plan.clone();
+        plan.frames = Frames::Of(heaviest(&plan, t));
         build(plan)
     }
 
