@@ -51,6 +51,8 @@ impl Morph for Arc<dyn Morph> {
 }
 
 #[cfg(test)]
+mod schemes_tests;
+#[cfg(test)]
 mod tests;
 
 /// Checks a plan and makes it a morph.
