@@ -8,6 +8,7 @@ pub mod dense;
 pub mod mesh;
 pub mod sample;
 pub mod sampled;
+pub mod skin;
 pub mod solid;
 
 use crate::num::{Aabb, Interval};

@@ -11,12 +11,14 @@ mod inner;
 mod level_set;
 mod measure;
 mod metamorphosis;
+mod moving;
 mod plan;
 mod space_time;
 mod transport;
 mod warp_field;
 mod whole;
 
+pub use moving::Moment;
 pub use plan::{
     Anchor, Blend, Course, Feature, Form, Frames, Inner, MorphError, Part, Plan, Scheme, SpaceTime,
 };

@@ -106,8 +106,9 @@ pub fn run(
                 crumbs: variant.crumbs,
                 verify: settings.verify,
             };
-            let (made, notes) = match variant.morph(t) {
+            let (made, notes) = match variant.morph(t, job) {
                 Ok(morph) => (make(&work, &|job| morph.at(t, job), job)?, morph.notes()),
+                Err(MorphError::Cancelled(stop)) => return Err(stop.into()),
                 Err(e) => (FrameResult::failed(&work, e.to_string()), Vec::new()),
             };
             let mut frame = made.report;
