@@ -106,12 +106,17 @@ pub fn run(
                 crumbs: variant.crumbs,
                 verify: settings.verify,
             };
-            let (made, notes) = match variant.morph(t, job) {
+            let start = Instant::now();
+            let made = variant.morph(t, job);
+            // a shape that moves is made anew
+            let fresh = start.elapsed().as_secs_f64();
+            let (made, notes) = match made {
                 Ok(morph) => (make(&work, &|job| morph.at(t, job), job)?, morph.notes()),
                 Err(MorphError::Cancelled(stop)) => return Err(stop.into()),
                 Err(e) => (FrameResult::failed(&work, e.to_string()), Vec::new()),
             };
             let mut frame = made.report;
+            frame.seconds.morph += fresh;
             frame.notes = notes.into_iter().filter(|n| !report.notes.contains(n)).collect();
             report.notes.extend(frame.notes.iter().cloned());
             frame.mean_volume(variant.mean_volume(t));

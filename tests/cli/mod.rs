@@ -8,6 +8,8 @@ mod errors;
 mod make;
 /// The recipes and solids that ship with the crate.
 mod shipped;
+/// `surface`: files of every kind, their samples and meshes, and what is wrong with them.
+mod surface;
 /// Surface files as recipes, and as shapes among others.
 mod surfaces;
 /// `schema`, `completions`, `man`.
