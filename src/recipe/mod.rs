@@ -12,6 +12,7 @@ mod primitive;
 mod shapes;
 mod solid;
 mod source;
+pub mod surface;
 mod time;
 mod value;
 
@@ -29,7 +30,8 @@ pub use shapes::{
 pub use solid::{Mirror, Op, Part, Solid, SolidKind};
 pub(crate) use source::join;
 pub use source::{Problem, RecipeError, Source, read_text};
-pub use time::{TimeFn, Times};
+pub use surface::{SurfaceEntry, SurfaceMethod, parse_surface, surface_schema};
+pub use time::{TimeFn, Times, numbers};
 pub use value::{Auto, PlainOr};
 
 use schemars::JsonSchema;
