@@ -22,7 +22,7 @@ pub use method::{
     BlendEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry, OneOrMany, SpaceTimeEntry,
     WeightingEntry, WeightingKind, Weights,
 };
-pub use output::{GridEntry, MesherEntry, OutputEntry};
+pub use output::{GridEntry, MesherEntry, NameOrNames, OutputEntry};
 pub use primitive::{BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Primitive, PrismShape};
 pub use shapes::{
     LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,

@@ -1,6 +1,7 @@
 //! Moving pictures.
 
 mod gif;
+mod palette;
 #[cfg(test)]
 mod tests;
 mod webp;
