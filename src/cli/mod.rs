@@ -53,11 +53,11 @@ struct Common {
 enum Command {
     /// Morph two meshes or more into hybrids, without a recipe
     Morph(Box<morph::Morph>),
-    /// Make what a recipe says
+    /// Make what a recipe says, or one shape from its file
     Run(Box<run::Run>),
     /// Tell whether meshes can be printed: closed, manifold, free of self-contact, of one piece
     Check(check::Check),
-    /// Turn any mesh, or a solid, into a clean watertight mesh
+    /// Turn any mesh, solid or surface into a clean watertight mesh
     Convert(Box<convert::Convert>),
     /// Draw meshes: one picture, or a sheet of many
     Picture(picture::Picture),

@@ -9,10 +9,13 @@ mod draft;
 mod elements;
 mod live;
 mod mesh_element;
+mod moving;
+mod pair;
 mod place;
 mod plan;
 mod rows;
 mod single;
+mod skinned;
 pub mod surface;
 mod variant;
 
