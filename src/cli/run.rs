@@ -154,7 +154,11 @@ impl Run {
         };
         let mesh = recipe.output.mesh.clone().unwrap_or_else(|| default.to_owned());
         let picture = recipe.output.picture.clone();
-        for (key, name) in [("mesh", Some(&mesh)), ("picture", picture.as_ref())] {
+        let animations = recipe.output.animations().to_vec();
+        let moving = animations.iter().map(|name| ("animation", Some(name)));
+        for (key, name) in
+            [("mesh", Some(&mesh)), ("picture", picture.as_ref())].into_iter().chain(moving)
+        {
             if name.is_some_and(|n| !stays_inside(n)) {
                 let why = "leaves the output folder; give a plain relative name";
                 let problem = fieldgraft::recipe::Problem::new(format!("output.{key}"), why);
@@ -166,6 +170,7 @@ impl Run {
             folder: self.output.clone().unwrap_or_default(),
             mesh,
             picture,
+            animations,
             report: "run.json".to_owned(),
             unnamed: unnamed.to_owned(),
         })

@@ -24,7 +24,7 @@ pub use method::{
     BlendEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry, OneOrMany, SpaceTimeEntry,
     TransportEntry, WeightingEntry, WeightingKind, Weights,
 };
-pub use output::{GridEntry, MesherEntry, OutputEntry};
+pub use output::{GridEntry, MesherEntry, NameOrNames, OutputEntry};
 pub use primitive::{BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Primitive, PrismShape};
 pub use shapes::{
     CurveEntry, LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, SkinEntry, ThickenEntry,
