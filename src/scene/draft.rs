@@ -100,6 +100,19 @@ impl Draft {
     /// # Errors
     /// What is wrong in the recipe or a file, by its key; cancelled.
     pub fn build(self, job: &dyn Job) -> Result<Scene, SceneError> {
+        let (scene, refused) = self.build_each(job)?;
+        refused.into_iter().next().map_or(Ok(scene), |(_, why)| Err(why))
+    }
+
+    /// [`Draft::build`], but a hybrid that cannot be planned does not stop the others: its name and
+    /// what is wrong come back beside the scene.
+    ///
+    /// # Errors
+    /// What is wrong with the shapes or the grid, by its key; cancelled.
+    pub fn build_each(
+        self,
+        job: &dyn Job,
+    ) -> Result<(Scene, Vec<(String, SceneError)>), SceneError> {
         let (padding, step) = (self.padding(), self.step);
         let Self { recipe, source, beside, placed, .. } = self;
         let locate = |p: Problem| SceneError::Bad(source.locate(p));
@@ -124,20 +137,24 @@ impl Draft {
             let seconds = [made, start.elapsed().as_secs_f64() - made];
             shapes.push(LiveShape { name, field, volume, bounds, seconds });
         }
-        let variants = recipe
-            .variants()
-            .iter()
-            .map(|(at, entry)| Variant::new(entry, at, &shapes, &meshes, &recipe))
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(locate)?;
+        let (mut variants, mut refused) = (Vec::new(), Vec::new());
+        for (at, entry) in recipe.variants() {
+            match Variant::new(&entry, &at, &shapes, &meshes, &recipe) {
+                Ok(variant) => variants.push(variant),
+                Err(p) => refused.push((entry.name, locate(p))),
+            }
+        }
         let mut domain = Aabb::EMPTY;
         for v in &variants {
             let morph = v.morph(0.5).map_err(|e| locate(Problem::new("morph", e.to_string())))?;
             domain = domain.hull(morph.domain());
         }
+        if domain.is_empty() {
+            domain = box_;
+        }
         let lattice = Lattice::covering(&domain.grow(padding), step);
         fits(&lattice).map_err(locate)?;
-        Ok(Scene { name: recipe.name, shapes, variants, lattice, notes, inputs })
+        Ok((Scene { name: recipe.name, shapes, variants, lattice, notes, inputs }, refused))
     }
 }
 
