@@ -9,10 +9,13 @@ mod draft;
 mod elements;
 mod live;
 mod mesh_element;
+mod moving;
+mod pair;
 mod place;
 mod plan;
 mod rows;
 mod single;
+mod skinned;
 pub mod surface;
 mod variant;
 
@@ -76,8 +79,8 @@ pub struct Scene {
 /// # Errors
 /// Too few shapes, or a method that needs what the recipe lacks.
 pub fn applies(entry: &MorphEntry, recipe: &Recipe, at: &str) -> Result<Vec<String>, Problem> {
-    let names = plan::shape_names(entry, at)?;
-    plan::method(entry, names.len(), recipe, at)?;
+    let names = plan::shape_names(entry, recipe, at)?;
+    plan::method(entry, &names, recipe, at)?;
     Ok(names)
 }
 

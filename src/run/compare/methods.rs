@@ -1,5 +1,6 @@
 //! The methods that can be compared: a name and what it changes of a recipe's `[morph]`.
 
+use crate::scene::applies;
 use crate::recipe::{
     BlendEntry, InnerEntry, MethodEntry, MorphEntry, PlainOr, Recipe, WeightingKind, did_you_mean,
 };
@@ -11,15 +12,7 @@ pub struct Method {
     pub name: &'static str,
     /// What it is, in a line.
     pub says: &'static str,
-    needs: Needs,
     change: fn(&mut MorphEntry),
-}
-
-/// What a recipe must have for a method to apply.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Needs {
-    Nothing,
-    Features,
 }
 
 /// A name of a method and the `[morph]` it stands for.
@@ -45,38 +38,32 @@ pub const METHODS: &[Method] = &[
     Method {
         name: "linear",
         says: "weighted mean of the signed distances (paper 001, eq. 2)",
-        needs: Needs::Nothing,
         change: |m| plain(m, MethodEntry::Linear),
     },
     Method {
         name: "space-time",
         says: "bounded blending in space-time, its height chosen so that the volume is kept",
-        needs: Needs::Nothing,
         change: |m| plain(m, MethodEntry::SpaceTime),
     },
     Method {
         name: "feature-volume",
         says: "fields averaged feature by feature, inverse-square weights (Lerios 1995)",
-        needs: Needs::Features,
         change: |m| plain(m, MethodEntry::FeatureVolume),
     },
     Method {
         name: "graft:fields",
         says: "paper 001, eq. 1 with eq. 5 and linear inside",
-        needs: Needs::Features,
         change: |m| fields(m, InnerEntry::Linear),
     },
     Method {
         name: "graft:fields-space-time",
         says: "paper 001, eq. 1 with eq. 5 and space-time blending inside",
-        needs: Needs::Features,
         change: |m| fields(m, InnerEntry::SpaceTime),
     },
     Method {
         name: "graft:paper",
         says: "Figure 7 d of paper 001: eq. 1, space-time blending and local offsets (the \
                recipe's, or 4 mm)",
-        needs: Needs::Features,
         change: |m| {
             fields(m, InnerEntry::SpaceTime);
             m.offset = m.offset.or(Some(PAPER_OFFSET));
@@ -85,14 +72,42 @@ pub const METHODS: &[Method] = &[
     Method {
         name: "graft",
         says: "positions blended, the lesser shape grows out of the dominant one",
-        needs: Needs::Features,
         change: |m| maps(m, InnerEntry::Grow),
     },
     Method {
         name: "graft:erode",
         says: "positions blended, the lesser shape shrinks towards the dominant one",
-        needs: Needs::Features,
         change: |m| maps(m, InnerEntry::Erode),
+    },
+    Method {
+        name: "pde-boundary",
+        says: "paper 000, method A: the curves are blended and the equation solved again",
+        change: |m| plain(m, MethodEntry::PdeBoundary),
+    },
+    Method {
+        name: "pde-modes",
+        says: "paper 000, method B: the modes of one fade out, those of the other in",
+        change: |m| plain(m, MethodEntry::PdeModes),
+    },
+    Method {
+        name: "pde-combined",
+        says: "paper 000, method C: the curves at the ends are blended, modes elsewhere",
+        change: |m| plain(m, MethodEntry::PdeCombined),
+    },
+    Method {
+        name: "pde-spine",
+        says: "paper 000, method D: the spines are blended, then what stands on them",
+        change: |m| plain(m, MethodEntry::PdeSpine),
+    },
+    Method {
+        name: "nurbs-linear",
+        says: "paper 003: the mean of the points of two rational B-splines",
+        change: |m| plain(m, MethodEntry::NurbsLinear),
+    },
+    Method {
+        name: "nurbs-weighted",
+        says: "paper 003: the mean of the points by their masses",
+        change: |m| plain(m, MethodEntry::NurbsWeighted),
     },
 ];
 
@@ -129,8 +144,8 @@ pub fn choose(
     base: &MorphEntry,
 ) -> Result<Vec<Chosen>, String> {
     if wanted.is_empty() {
-        let applies = |m: &&Method| m.needs == Needs::Nothing || !recipe.features.is_empty();
-        return Ok(METHODS.iter().filter(applies).map(|m| m.chosen(base)).collect());
+        let applies = |c: &Chosen| applies(&c.entry, recipe, "morph").is_ok();
+        return Ok(METHODS.iter().map(|m| m.chosen(base)).filter(applies).collect());
     }
     let mut all: Vec<Chosen> = Vec::with_capacity(wanted.len());
     for name in wanted {

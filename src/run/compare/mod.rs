@@ -20,6 +20,7 @@ use crate::check::Shell;
 use crate::field::Shared;
 use crate::job::{self, Cancelled, Job};
 use crate::mesh::{self, TriMesh};
+use crate::morph::MorphError;
 use crate::num::Aabb;
 use crate::picture::{Cell, Image, Layout, Style, render, save_png, sheet};
 use crate::recipe::MesherEntry;
@@ -261,8 +262,9 @@ fn made(
 ) -> Result<(FrameResult, Option<Shared>), Cancelled> {
     let start = Instant::now();
     job.stage("morph");
-    let morph = match variant.morph(work.t) {
+    let morph = match variant.morph(work.t, job) {
         Ok(morph) => morph,
+        Err(MorphError::Cancelled(stop)) => return Err(stop),
         Err(e) => return Ok((FrameResult::failed(work, e.to_string()), None)),
     };
     let field = morph.at(work.t, job)?;
