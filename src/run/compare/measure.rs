@@ -61,7 +61,7 @@ impl Parent {
 /// Fills in what the check found.
 pub(super) fn health(row: &mut Row, report: &FrameReport) {
     row.error = report.error.clone();
-    row.active_bricks = report.active_bricks;
+    row.active_bricks = Some(report.active_bricks);
     row.border_clipped = Some(report.border_clipped);
     row.crumbs = Some(report.crumbs.count as u64);
     row.volume_kept = report.volume_kept;

@@ -187,8 +187,9 @@ pub fn compare(
     about.times.dedup();
     about.claims = claims(&about);
     about.seconds_total += start.elapsed().as_secs_f64();
-    about.peak_memory_mb = about.methods.iter().filter_map(|m| m.peak_mb).reduce(f64::max);
-    about.peak_memory_mb = about.peak_memory_mb.max(peak_memory().map(|b| b as f64 / 1e6));
+    // peaks were reset on the way
+    let peaks = about.methods.iter().filter_map(|m| m.peak_mb);
+    about.peak_memory_mb = peaks.chain(peak_memory().map(|b| b as f64 / 1e6)).reduce(f64::max);
     job::check(job)?;
     write(&about, &pictures, &how, job)?;
     Ok(about)
