@@ -183,7 +183,7 @@ fn stays_inside(name: &str) -> bool {
 }
 
 /// Reads the recipe, with keys changed where asked.
-fn parse(text: &str, file: &Path, set: &[String]) -> Result<(Recipe, Source), RecipeFailure> {
+pub fn parse(text: &str, file: &Path, set: &[String]) -> Result<(Recipe, Source), RecipeFailure> {
     let read = Recipe::parse(text, file)?;
     if set.is_empty() {
         return Ok(read);
@@ -244,8 +244,10 @@ fn indexed(step: &str) -> Result<(String, Option<usize>), String> {
 }
 
 /// A bad recipe, or a bad `--set`.
-enum RecipeFailure {
+pub enum RecipeFailure {
+    /// The recipe.
     Recipe(RecipeError),
+    /// The command line.
     Usage(String),
 }
 

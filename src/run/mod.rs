@@ -2,6 +2,7 @@
 //! report that lies beside them.
 
 mod animation;
+pub mod compare;
 mod files;
 mod frame;
 mod predict;
@@ -13,7 +14,7 @@ pub use files::{Names, place_text, time_word};
 pub use frame::{FrameResult, Work, make};
 pub use predict::{Prediction, coarsening, predict, predict_one, probe};
 pub use report::{FrameReport, Report, Seconds, ShapeReport};
-pub use system::{available_memory, peak_memory};
+pub use system::{Machine, available_memory, peak_memory, reset_peak};
 
 use crate::job::{Cancelled, Job};
 use crate::mesh::{self, MeshError};

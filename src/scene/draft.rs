@@ -115,6 +115,19 @@ impl Draft {
     /// # Errors
     /// What is wrong in the recipe or a file, by its key; cancelled.
     pub fn build(self, job: &dyn Job) -> Result<Scene, SceneError> {
+        let (scene, refused) = self.build_each(job)?;
+        refused.into_iter().next().map_or(Ok(scene), |(_, why)| Err(why))
+    }
+
+    /// [`Draft::build`], but a hybrid that cannot be planned does not stop the others: its name and
+    /// what is wrong come back beside the scene.
+    ///
+    /// # Errors
+    /// What is wrong with the shapes or the grid, by its key; cancelled.
+    pub fn build_each(
+        self,
+        job: &dyn Job,
+    ) -> Result<(Scene, Vec<(String, SceneError)>), SceneError> {
         let (padding, step) = (self.padding(), self.step);
         let Self { recipe, source, beside, placed, uses, .. } = self;
         let locate = |p: Problem| SceneError::Bad(source.locate(p));
@@ -137,17 +150,19 @@ impl Draft {
         }
         let parts =
             Parts { recipe: &recipe, beside: &beside, shapes: &shapes, meshes: &meshes, step };
-        let variants = recipe
-            .variants()
-            .iter()
-            .map(|(at, entry)| Variant::new(entry, at, &parts))
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(locate)?;
+        let (mut variants, mut refused) = (Vec::new(), Vec::new());
+        for (at, entry) in recipe.variants() {
+            match Variant::new(&entry, &at, &parts) {
+                Ok(variant) => variants.push(variant),
+                Err(p) => refused.push((entry.name, locate(p))),
+            }
+        }
         notes.extend(variants.iter().flat_map(|v| v.notes.clone()));
-        let domain = variants.iter().fold(Aabb::EMPTY, |b, v| b.hull(v.domain()));
+        // where no hybrid can be planned, the shapes themselves
+        let domain = variants.iter().map(Variant::domain).reduce(Aabb::hull).unwrap_or(box_);
         let lattice = Lattice::covering(&domain.grow(padding), step);
         fits(&lattice).map_err(locate)?;
-        Ok(Scene { name: recipe.name, shapes, variants, lattice, notes, inputs })
+        Ok((Scene { name: recipe.name, shapes, variants, lattice, notes, inputs }, refused))
     }
 }
 
