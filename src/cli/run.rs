@@ -154,7 +154,11 @@ impl Run {
         };
         let mesh = recipe.output.mesh.clone().unwrap_or_else(|| default.to_owned());
         let picture = recipe.output.picture.clone();
-        for (key, name) in [("mesh", Some(&mesh)), ("picture", picture.as_ref())] {
+        let animations = recipe.output.animations().to_vec();
+        let moving = animations.iter().map(|name| ("animation", Some(name)));
+        for (key, name) in
+            [("mesh", Some(&mesh)), ("picture", picture.as_ref())].into_iter().chain(moving)
+        {
             if name.is_some_and(|n| !stays_inside(n)) {
                 let why = "leaves the output folder; give a plain relative name";
                 let problem = fieldgraft::recipe::Problem::new(format!("output.{key}"), why);
@@ -166,6 +170,7 @@ impl Run {
             folder: self.output.clone().unwrap_or_default(),
             mesh,
             picture,
+            animations,
             report: "run.json".to_owned(),
             unnamed: unnamed.to_owned(),
         })
@@ -178,7 +183,7 @@ fn stays_inside(name: &str) -> bool {
 }
 
 /// Reads the recipe, with keys changed where asked.
-fn parse(text: &str, file: &Path, set: &[String]) -> Result<(Recipe, Source), RecipeFailure> {
+pub fn parse(text: &str, file: &Path, set: &[String]) -> Result<(Recipe, Source), RecipeFailure> {
     let read = Recipe::parse(text, file)?;
     if set.is_empty() {
         return Ok(read);
@@ -239,8 +244,10 @@ fn indexed(step: &str) -> Result<(String, Option<usize>), String> {
 }
 
 /// A bad recipe, or a bad `--set`.
-enum RecipeFailure {
+pub enum RecipeFailure {
+    /// The recipe.
     Recipe(RecipeError),
+    /// The command line.
     Usage(String),
 }
 
