@@ -29,7 +29,7 @@ pub struct Reading {
     /// Give open or one-sided surfaces, and curves, this thickness; 0 gives none
     #[arg(long, value_name = "MM", value_delimiter = ',')]
     pub thickness: Vec<f64>,
-    /// How surfaces become solid: auto, solid (holes are closed by winding number) or shell
+    /// How surfaces become solid: auto, solid (open rims get lids) or shell
     #[arg(long, value_name = "SKIN", value_delimiter = ',')]
     pub skin: Vec<String>,
     /// Hold surfaces that move at this time in [0, 1]; auto lets them follow -t

@@ -38,7 +38,7 @@ pub struct Run {
     /// Thickness of a surface file that encloses nothing, and of a curve
     #[arg(long, value_name = "MM", value_parser = thickness)]
     thickness: Option<f64>,
-    /// How a surface file becomes solid: auto, solid (holes are closed by winding number) or shell
+    /// How a surface file becomes solid: auto, solid (open rims get lids) or shell
     #[arg(long, value_name = "SKIN", value_parser = skin)]
     skin: Option<SkinEntry>,
     #[command(flatten)]

@@ -3,7 +3,12 @@
 //! A *piece* is what hangs together by edges. A piece is *whole* when it is closed and has two
 //! sides: every edge is run through as often in one direction as in the other. What is whole is
 //! solid, by the winding number; the rest are *sheets*, to which the unsigned distance is taken, less
-//! half the thickness. A Klein bottle is closed and yet a sheet: it has one side.
+//! half the thickness. A Klein bottle is closed and yet a sheet: it has one side. Where sheets are to be
+//! solid all the same, their rims get lids.
+
+mod lids;
+#[cfg(test)]
+mod tests;
 
 use super::Shared;
 use super::csg::{Join, Joined};
@@ -18,7 +23,7 @@ pub enum Skin {
     /// Those that are whole.
     #[default]
     Auto,
-    /// All: whatever the winding number says is inside.
+    /// All: rims are closed with lids, and what the winding number says is inside is solid.
     Solid,
     /// None: everything is a shell.
     Shell,
@@ -51,9 +56,9 @@ pub struct Sides {
 pub enum SkinError {
     /// Sheets without a thickness.
     #[error(
-        "the surface encloses nothing: {}; give it a thickness{}",
+        "the surface encloses nothing: {}; give it a `thickness`, in mm{}",
         .0.story(),
-        if .0.open_edges > 0 { ", or skin = \"solid\" to close its holes by winding number" } else { "" }
+        if .0.open_edges > 0 { ", or skin = \"solid\" to put lids on its rims" } else { "" }
     )]
     Sheet(Sides),
     /// What the field of its triangles says.
@@ -124,6 +129,9 @@ pub fn skin(
         if solid { &mut whole } else { &mut sheets }.faces.push(*face);
     }
     let mut fields: Vec<Shared> = vec![];
+    if options.skin == Skin::Solid && sides.open_edges > 0 {
+        whole = lids::with_lids(&whole);
+    }
     if !whole.faces.is_empty() {
         match MeshField::new(&whole, &MeshOptions::default(), job) {
             Ok((field, _)) => fields.push(Arc::new(field)),
@@ -186,6 +194,3 @@ impl Pieces {
         Self { of_face, whole, sides }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -129,7 +129,7 @@ pub enum SkinEntry {
     /// Pieces that are closed and two-sided are solid, the others shells of the thickness.
     #[default]
     Auto,
-    /// What the surface encloses; holes are closed as the winding number has it.
+    /// What the surface encloses; open rims get lids.
     Solid,
     /// A shell of the thickness, even where the surface is closed.
     Shell,
@@ -256,7 +256,7 @@ impl ShapeEntry {
             return Ok(());
         };
         let hint = if *key == "thickness" && is == "mesh" { "; meshes have `thicken`" } else { "" };
-        let why = format!("is for surfaces, and this is a {is}{hint}");
+        let why = format!("`{key}` is for surfaces, and this is a {is}{hint}");
         Err(Problem::new(format!("{at}.{key}"), why))
     }
 

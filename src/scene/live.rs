@@ -174,8 +174,7 @@ fn surface_file(entry: &ShapeEntry, path: &Path, solid: bool, at: &str) -> Resul
     let skinned = Skinned::new(file.object, How::of(entry), by, entry.at).map_err(named)?;
     if solid {
         skinned.encloses().map_err(|e| {
-            let why = format!("{}: {e} (`thickness`, in mm)", path.display());
-            Problem::new(format!("{at}.thickness"), why)
+            Problem::new(format!("{at}.thickness"), format!("{}: {e}", path.display()))
         })?;
     }
     let story = format!("{}, {}", path.display(), file.story);

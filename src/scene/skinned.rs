@@ -162,8 +162,8 @@ impl Skinned {
         let time = self.outlines[0].0;
         match self.object.at(time)? {
             Still::Curve(_) => {
-                let why = "a curve encloses nothing by itself; give it one, in mm";
-                Err(SurfaceError::new("thickness", why).into())
+                let why = "it encloses nothing by itself; give it a `thickness`, in mm";
+                Err(SurfaceError::new("curve", why).into())
             }
             Still::Surface(s) if self.how.skin.skin == Skin::Auto => {
                 let sides = Sides::of(&tessellate(&*s, ROUGH * size(&*s)?)?.mesh);

@@ -41,7 +41,7 @@ fn a_surface_file_is_a_recipe_of_one_shape() {
     }
     let [one, two] = ["out-1", "out-2"].map(|o| folder.join(o).join("klein-bottle.stl"));
     assert_eq!(fs::read(one).unwrap(), fs::read(two).unwrap());
-    let e = folder.run(&["run", bottle, "--thickness", "-1", "-o", "o"]);
+    let e = folder.run(&["run", bottle, "--thickness", "0", "-o", "o"]);
     e.fails(2, &["more than 0"]);
 }
 

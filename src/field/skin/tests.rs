@@ -67,11 +67,20 @@ fn sheets_without_a_thickness_are_refused() {
 }
 
 #[test]
-fn a_cup_can_be_filled_by_its_winding_number() {
-    // the lid is where half of all directions meet the cup: a cap above the rim's plane
+fn a_cup_can_be_filled_to_the_rim() {
     let v = volume(&cup(), options(None, Skin::Solid), 0.25);
     let half = 2.0 / 3.0 * PI * 1000.0;
-    assert!(v > 0.99 * half && v < 1.4 * half, "{v} {half}");
+    assert!((v / half - 1.0).abs() < 0.01, "{v} {half}");
+    // a tube open at both ends becomes a rod
+    let mut tube = TriMesh::default();
+    for i in 0..48u32 {
+        let (s, c) = (f64::from(i) * PI / 24.0).sin_cos();
+        tube.points.extend([DVec3::new(5.0 * c, 5.0 * s, 0.0), DVec3::new(5.0 * c, 5.0 * s, 20.0)]);
+        let [a, b] = [2 * i, 2 * ((i + 1) % 48)];
+        tube.faces.extend([[a, b, b + 1], [a, b + 1, a + 1]]);
+    }
+    let v = volume(&tube, options(None, Skin::Solid), 0.25);
+    assert!((v / (500.0 * PI) - 1.0).abs() < 0.01, "{v}");
 }
 
 #[test]

@@ -50,7 +50,7 @@ fn what_encloses_nothing_needs_a_thickness() {
         ("klein-bottle.toml", "closed with one side only"),
         ("shell.toml", "open ("),
         ("dynamic-plate.toml", "open ("),
-        ("letter-e.toml", "a curve encloses nothing"),
+        ("letter-e.toml", "curve: it encloses nothing"),
     ] {
         let e = scene(&format!("[shapes.a]\nsurface = \"{file}\"")).err().unwrap();
         for part in ["shapes.a.thickness: ", file, why, "`thickness`"] {
@@ -172,8 +172,8 @@ fn surface_methods_take_two_surfaces_of_their_kind_made_alike() {
 #[test]
 fn surface_keys_are_for_surfaces() {
     for (shape, why) in [
-        ("mesh = \"x.stl\"\nthickness = 3", "shapes.a.thickness: is for surfaces"),
-        ("mesh = \"x.stl\"\nskin = \"shell\"", "shapes.a.skin: is for surfaces"),
+        ("mesh = \"x.stl\"\nthickness = 3", "shapes.a.thickness: `thickness` is for surfaces"),
+        ("mesh = \"x.stl\"\nskin = \"shell\"", "shapes.a.skin: `skin` is for surfaces"),
         ("surface = \"x.toml\"\nthicken = 3", "shapes.a.thicken: is for meshes; a surface has"),
         ("surface = \"x.toml\"\nsign = \"unsigned\"", "shapes.a.sign: is for meshes"),
         ("surface = \"x.toml\"\nmesh = \"x.stl\"", "both `mesh` and `surface`"),
