@@ -48,7 +48,7 @@ fn hybrids<S: AsRef<str>>(keys: impl IntoIterator<Item = S>) -> String {
 }
 
 fn field(variant: &Variant, t: f64) -> Shared {
-    variant.morph(t).unwrap().at(t, &Quiet).unwrap()
+    variant.morph(t, &Quiet).unwrap().at(t, &Quiet).unwrap()
 }
 
 /// The mesh of a hybrid at a time, as a run makes it.
@@ -61,7 +61,7 @@ fn frame(scene: &Scene, variant: &Variant, t: f64) -> FrameResult {
         crumbs: variant.crumbs,
         verify: false,
     };
-    make(&work, &|job| variant.morph(t).unwrap().at(t, job), &Quiet).unwrap()
+    make(&work, &|job| variant.morph(t, job).unwrap().at(t, job), &Quiet).unwrap()
 }
 
 /// Every pair method and every inner function, weighting and blend of a graft.
