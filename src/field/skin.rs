@@ -5,9 +5,9 @@
 //! solid, by the winding number; the rest are *sheets*, to which the unsigned distance is taken, less
 //! half the thickness. A Klein bottle is closed and yet a sheet: it has one side.
 
+use super::Shared;
 use super::csg::{Join, Joined};
 use super::mesh::{MeshField, MeshFieldError, MeshOptions, Sign, Thicken, Which};
-use super::Shared;
 use crate::job::{Cancelled, Job};
 use crate::mesh::TriMesh;
 use std::sync::Arc;
@@ -50,7 +50,11 @@ pub struct Sides {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SkinError {
     /// Sheets without a thickness.
-    #[error("the surface encloses nothing: {}; give it a thickness", .0.story())]
+    #[error(
+        "the surface encloses nothing: {}; give it a thickness{}",
+        .0.story(),
+        if .0.open_edges > 0 { ", or skin = \"solid\" to close its holes by winding number" } else { "" }
+    )]
     Sheet(Sides),
     /// What the field of its triangles says.
     #[error(transparent)]

@@ -1,3 +1,5 @@
+/// Files that play the frames of a morph.
+mod animation;
 /// `check` and its JSON.
 mod check;
 /// `convert`: meshes and solids in, meshes and fields out.
