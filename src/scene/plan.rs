@@ -7,17 +7,22 @@ use crate::element::{Element, align};
 use crate::morph::{Blend, Form, Frames, Inner, Part, Plan, SpaceTime};
 use crate::recipe::{
     BlendEntry, ElementShape, FeatureEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry,
-    OneOrMany, PlainOr, Problem, Recipe, SpaceTimeEntry, WeightingEntry, WeightingKind,
+    OneOrMany, PlainOr, Problem, Recipe, SpaceTimeEntry, SurfaceMethod, WeightingEntry, WeightingKind,
 };
 use crate::warp::Deform;
 use crate::weight::Weighting;
 use std::collections::BTreeMap;
 
-/// Which shapes an entry morphs, in order.
-pub(super) fn shape_names(entry: &MorphEntry, at: &str) -> Result<Vec<String>, Problem> {
+/// Which shapes an entry morphs, in order; the recipe's only one where it names none.
+pub(super) fn shape_names(
+    entry: &MorphEntry,
+    recipe: &Recipe,
+    at: &str,
+) -> Result<Vec<String>, Problem> {
     let names: Vec<String> = match (&entry.between, &entry.among) {
         (Some(pair), _) => pair.to_vec(),
         (None, Some(all)) => all.clone(),
+        (None, None) if recipe.shapes.len() == 1 => recipe.shapes.keys().cloned().collect(),
         (None, None) => {
             let why = "which shapes? give between = [\"a\", \"b\"] or among = [\"a\", \"b\", ...]";
             return Err(Problem::new(at, why));
@@ -25,8 +30,8 @@ pub(super) fn shape_names(entry: &MorphEntry, at: &str) -> Result<Vec<String>, P
     };
     let key = if entry.between.is_some() { "between" } else { "among" };
     let at = format!("{at}.{key}");
-    if names.len() < 2 {
-        return Err(Problem::new(at, format!("{} shape; a morph needs two or more", names.len())));
+    if names.is_empty() {
+        return Err(Problem::new(at, "no shape; give one to have it alone, or two or more to morph"));
     }
     for (i, name) in names.iter().enumerate() {
         if names[..i].contains(name) {
@@ -39,20 +44,29 @@ pub(super) fn shape_names(entry: &MorphEntry, at: &str) -> Result<Vec<String>, P
 /// The method meant: `auto` decided, and what it needs is there.
 pub(super) fn method(
     entry: &MorphEntry,
-    shapes: usize,
+    names: &[String],
     recipe: &Recipe,
     at: &str,
 ) -> Result<MethodEntry, Problem> {
+    let shapes = names.len();
     let asked = entry.method.unwrap_or_default();
     let featured = !recipe.features.is_empty();
     let needs =
         matches!(asked, MethodEntry::Graft | MethodEntry::Group | MethodEntry::FeatureVolume);
     let at = format!("{at}.method");
+    if shapes == 1 && asked != MethodEntry::Auto {
+        let why = "this morph is of one shape, which is made as it is; remove the method";
+        return Err(Problem::new(at, why));
+    }
+    if let Some(method) = asked.surface() {
+        return surfaces(names, recipe, method, &at).map(|()| asked);
+    }
     if needs && !featured {
         let why = "this method needs features; add [[features]], or use \"space-time\"";
         return Err(Problem::new(at, why));
     }
     match asked {
+        MethodEntry::Auto if shapes == 1 => Ok(MethodEntry::Auto),
         MethodEntry::Graft if shapes != 2 => {
             let why = format!("a graft has two shapes, here are {shapes}; use \"group\"");
             Err(Problem::new(at, why))
@@ -61,6 +75,24 @@ pub(super) fn method(
         MethodEntry::Auto if shapes == 2 => Ok(MethodEntry::Graft),
         MethodEntry::Auto => Ok(MethodEntry::Group),
         other => Ok(other),
+    }
+}
+
+/// Whether a method of two surface files has them.
+fn surfaces(
+    names: &[String],
+    recipe: &Recipe,
+    method: SurfaceMethod,
+    at: &str,
+) -> Result<(), Problem> {
+    let (word, kind) = (method.word(), method.of().word());
+    let needs = format!("{word} morphs two surface files of kind {kind}");
+    if names.len() != 2 {
+        return Err(Problem::new(at, format!("{needs}, here are {} shapes", names.len())));
+    }
+    match names.iter().find(|n| recipe.shapes[*n].surface.is_none()) {
+        Some(name) => Err(Problem::new(at, format!("{needs}; `{name}` is no surface file"))),
+        None => Ok(()),
     }
 }
 

@@ -89,7 +89,12 @@ fn methods_are_chosen_by_what_is_there() {
 fn what_cannot_be_is_told_by_its_key() {
     for (rest, expected) in [
         ("", "morph: which shapes?"),
-        ("[morph]\namong = [\"a\"]", "morph.among: 1 shape"),
+        ("[morph]\namong = []", "morph.among: no shape"),
+        (
+            "[morph]\namong = [\"a\"]\nmethod = \"linear\"",
+            "morph.method: this morph is of one shape",
+        ),
+        ("[morph]\namong = [\"a\"]\nt = [0, 1]", "morph.t: nothing depends on t: no shape moves"),
         ("[morph]\namong = [\"a\", \"c\", \"a\"]", "morph.among: `a` is there twice"),
         ("[morph]\nmethod = \"graft\"\namong = [\"a\", \"b\", \"c\"]", "here are 3; use \"group\""),
         (
@@ -139,7 +144,7 @@ fn cells_too_fine_for_a_file_are_refused() {
 fn dominant_frames_are_those_of_the_heavier_shape() {
     let inside = |frames: &str, t: f64, z: f64| {
         let s = scene(&format!("[morph]\nbetween = [\"a\", \"c\"]\nframes = \"{frames}\""));
-        let morph = s.unwrap().variants[0].morph(t).unwrap();
+        let morph = s.unwrap().variants[0].morph(t, &Quiet).unwrap();
         morph.at(t, &Quiet).unwrap().value(glam::DVec3::new(0.0, 0.0, z)) < 0.0
     };
     // a is 10 high in a frame of 12, c reaches 20/22 of its own; in a's frame both end below 10.5,
