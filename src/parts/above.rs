@@ -120,8 +120,8 @@ fn back(matter: &[DVec3], seat_y: f64, width: f64, tall: f64, foot: f64) -> Opti
     let off = |p: &DVec3| p.y - at - slope * p.z;
     // posts may stand wider than the middle, and belong to the back where they are in its plane
     let offs: Vec<f64> = behind.iter().map(off).collect();
-    let front = -quantile(&offs, 0.03);
-    let rear = quantile(&offs, 0.97);
+    let front = -quantile(&offs, 0.01);
+    let rear = quantile(&offs, 0.99);
     let all: Vec<&DVec3> =
         matter.iter().filter(|p| off(p) > -front - 1.5 && off(p) < rear + 1.5).collect();
     let from = all.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);

@@ -2,10 +2,11 @@
 
 use super::above;
 use super::base::{self, Kind};
-use super::chair::{Arm, Back, Base, Chair, Column, Leg, Seat};
-use super::legs::Track;
+use super::chair::{Arm, Back, Base, Chair, Column, Leg, Seat, Stretcher};
+use super::legs::{self, Track};
 use super::mirror::{Mirror, Plane};
 use super::seat;
+use super::stretchers;
 use super::volume::{Stand, Volume};
 use crate::field::Field;
 use crate::grid::Lattice;
@@ -36,8 +37,7 @@ pub(super) struct Look {
 /// Looks at a shape; none when it is empty or without bounds.
 pub(super) fn look(field: &dyn Field, job: &dyn Job) -> Result<Option<Look>, Cancelled> {
     let Some((coarse, floor, top)) = coarse(field, job)? else { return Ok(None) };
-    let stand = stand(&coarse, floor, top, &field.support());
-    let (stand, score) = stand;
+    let (stand, score) = stand(&coarse, floor, top, &field.support());
     let matter = coarse.solids().map(|p| stand.point(coarse.point(p)));
     let bounds = Aabb::of(matter);
     let lattice = lattice(&bounds);
@@ -122,7 +122,8 @@ fn stand(v: &Volume, floor: usize, top: usize, support: &Aabb) -> (Stand, f64) {
     } else {
         matter.centre().y
     };
-    (Stand { turn, shift: -DVec3::new(x, y, z) }, plane.score)
+    // never minus nought
+    (Stand { turn: turn + 0.0, shift: DVec3::ZERO - DVec3::new(x, y, z) }, plane.score)
 }
 
 /// The mirror plane to stand by: the best one, unless it cuts the back in two.
@@ -202,6 +203,7 @@ fn parts(
     };
     let sure = [sure_mirror, sure_seat, base.agree.clamp(0.0, 1.0)];
     let chair = Chair {
+        stretchers: bars(v, &base, seat.under, floor),
         base: stand_on(v, &base, &place),
         seat: place,
         back: back.map(|b| back_place(v, &b)),
@@ -230,6 +232,28 @@ fn arm_place(v: &Volume, a: &above::Arm) -> Arm {
     Arm { low: place(a.low), high: place(a.high) }
 }
 
+fn bars(v: &Volume, base: &base::Base, under: usize, floor: usize) -> Vec<Stretcher> {
+    let Kind::Legs(tracks) = &base.kind else { return Vec::new() };
+    let low = floor as f64;
+    let middle = |t: &Track| 0.5 * (t.point(low) + t.point(under as f64));
+    let Some(order) = legs::quadrants(&tracks.iter().map(middle).collect::<Vec<_>>()) else {
+        return Vec::new();
+    };
+    if crossed(tracks, low, under as f64) {
+        return Vec::new();
+    }
+    let place = |p: DVec3| v.plan(p.truncate()).extend(v.height(p.z));
+    stretchers::find(v, order.map(|i| &tracks[i]), floor, under)
+        .into_iter()
+        .map(|b| Stretcher {
+            side: b.side,
+            from: place(b.from),
+            to: place(b.to),
+            radius: b.radius * v.lattice.step,
+        })
+        .collect()
+}
+
 fn stand_on(v: &Volume, base: &base::Base, seat: &Seat) -> Base {
     let step = v.lattice.step;
     let floor = -v.lattice.origin.z / step;
@@ -250,6 +274,7 @@ fn stand_on(v: &Volume, base: &base::Base, seat: &Seat) -> Base {
     match &base.kind {
         Kind::Legs(t) if crossed(t, floor, head) => Base::Crossed(legs(t)),
         Kind::Legs(t) => Base::Legs(legs(t)),
+        Kind::Sled(t) if crossed(t, floor, head) => Base::Crossed(legs(t)),
         Kind::Sled(t) => Base::Sled(legs(t)),
         Kind::Cantilever(t) => Base::Cantilever(legs(t)),
         Kind::Disc | Kind::Star(_) => Base::Column(Column {

@@ -1,6 +1,6 @@
 //! Elements round the parts of one chair.
 
-use super::chair::{Arm, Back, Base, Chair, Column, Leg, Seat};
+use super::chair::{Arm, Back, Base, Chair, Column, Leg, Seat, Stretcher};
 use crate::element::{Element, ElementError};
 use glam::{DQuat, DVec2, DVec3};
 
@@ -9,6 +9,8 @@ const ROOM: f64 = 3.0;
 /// Radius of a leg's element over that of the leg. Tighter, bent legs leave it; looser, the element
 /// reaches into its neighbours.
 const LOOSE: f64 = 1.15;
+/// How far a leg's element reaches into the board, mm: a gap between the two would tear.
+const OVERLAP: f64 = 4.0;
 
 /// The board of the seat alone.
 pub(super) fn seat(s: &Seat) -> Result<Element, ElementError> {
@@ -34,7 +36,13 @@ pub(super) fn back(s: &Seat, b: &Back) -> Result<Element, ElementError> {
 
 /// A leg from the floor to the board.
 pub(super) fn leg(l: &Leg) -> Result<Element, ElementError> {
-    Element::rod(l.foot, l.head, l.reach.min(2.0 * l.radius) * LOOSE + ROOM)
+    let head = l.head + (l.head - l.foot).normalize_or_zero() * OVERLAP;
+    Element::rod(l.foot, head, l.reach.min(2.0 * l.radius) * LOOSE + ROOM)
+}
+
+/// A bar between legs.
+pub(super) fn stretcher(s: &Stretcher) -> Result<Element, ElementError> {
+    Element::rod(s.from, s.to, s.radius * LOOSE + ROOM)
 }
 
 /// An arm with what carries it above the seat.

@@ -55,7 +55,7 @@ impl Mask {
     }
 
     /// Every cell within `radius` of a cell that is on.
-    fn dilated(&self, radius: f64) -> Mask {
+    pub fn dilated(&self, radius: f64) -> Mask {
         let mut out = Self::empty(self.nx, self.ny);
         let disc = disc(radius);
         for [x, y] in self.cells() {
@@ -74,11 +74,6 @@ impl Mask {
     /// Gaps narrower than twice the radius filled.
     pub fn closed(&self, radius: f64) -> Mask {
         self.dilated(radius).inverse().dilated(radius).inverse()
-    }
-
-    /// Without the cells nearer to the border than the radius.
-    pub fn eroded(&self, radius: f64) -> Mask {
-        self.inverse().dilated(radius).inverse()
     }
 
     /// With the holes that nothing leads out of filled.
@@ -147,15 +142,6 @@ fn disc(radius: f64) -> Vec<[isize; 2]> {
     (-r..=r).flat_map(|y| (-r..=r).map(move |x| [x, y])).filter(within).collect()
 }
 
-/// Centre and spread of some cells.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Spread {
-    /// Direction of the longer axis.
-    pub along: DVec2,
-    /// Extent along and across it, in cells.
-    pub size: DVec2,
-}
-
 impl Region {
     pub fn area(&self) -> f64 {
         self.cells.len() as f64
@@ -182,8 +168,8 @@ impl Region {
         high - low + 1.0
     }
 
-    /// Principal axes.
-    pub fn spread(&self) -> Spread {
+    /// Extent along the longer principal axis and across it, in cells.
+    pub fn spread(&self) -> DVec2 {
         let c = self.centre();
         let mut m = DMat2::ZERO;
         for p in self.points() {
@@ -200,7 +186,7 @@ impl Region {
             );
             hi - lo + 1.0
         };
-        Spread { along, size: DVec2::new(reach(along), reach(across)) }
+        DVec2::new(reach(along), reach(across))
     }
 
     /// Share of a disc round the region's own centre that it covers.

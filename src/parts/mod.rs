@@ -23,10 +23,12 @@ mod mirror;
 mod pair;
 mod seat;
 mod slabs;
+mod stretchers;
 mod volume;
 
 
-pub use chair::{Arm, Back, Base, Chair, Column, Leg, Pose, Seat};
+pub use chair::{Arm, Back, Base, Chair, Column, Leg, Pose, Seat, Stretcher};
+pub use stretchers::Side;
 
 use crate::element::Element;
 use crate::field::Field;
@@ -135,8 +137,27 @@ fn guess(name: &str, look: Option<Look>) -> Guess {
     }
 }
 
-/// Sizes are kept; chairs of other scales need `height` first.
-fn scale(_guesses: &mut [Guess]) {}
+/// Seat heights that chairs have, mm.
+const SEATS: std::ops::RangeInclusive<f64> = 150.0..=1000.0;
+/// Height given to a seat when no chair tells another, mm.
+const SEAT: f64 = 450.0;
+
+/// Sizes are kept where a seat is at a height that chairs have. Others are taken for a wrong unit: they
+/// are scaled to the seat height of the first chair of a usual size.
+fn scale(guesses: &mut [Guess]) {
+    let seat = |g: &Guess| g.chair.as_ref().map(|c| c.seat.top);
+    let usual = guesses.iter().filter_map(seat).find(|z| SEATS.contains(z)).unwrap_or(SEAT);
+    for g in guesses {
+        let Some(top) = seat(g).filter(|z| !SEATS.contains(z) && *z > 0.0) else { continue };
+        let by = usual / top;
+        g.chair = g.chair.take().map(|c| c.scaled(by));
+        g.bounds = Aabb::new(g.bounds.min * by, g.bounds.max * by);
+        (g.pose.scale, g.pose.shift) = (by, g.pose.shift * by);
+        g.warnings.push(format!(
+            "the seat would be {top:.4} mm high; scaled to {usual:.0} mm: is the unit right?"
+        ));
+    }
+}
 
 fn features(guesses: &[Guess]) -> Vec<Paired> {
     let chairs: Option<Vec<&Chair>> = guesses.iter().map(|g| g.chair.as_ref()).collect();

@@ -1,7 +1,9 @@
 //! The parts of several chairs brought into correspondence.
 
-use super::chair::{Base, Chair, Leg};
+use super::chair::{Base, Chair, Leg, Stretcher};
 use super::fit;
+use super::legs;
+use super::stretchers::Side;
 use super::{Note, Paired};
 use crate::element::{Element, ElementError};
 use glam::{DVec2, DVec3};
@@ -44,6 +46,33 @@ pub(super) fn pair(chairs: &[&Chair]) -> Vec<Paired> {
         } else {
             let note = if mixed(chairs) { Note::Mixed } else { Note::Found };
             put(name("leg"), legs(Part::Whole), sure(2), note);
+        }
+    }
+    for (name, elements) in stretchers(chairs) {
+        put(name, elements, sure(2), Note::Found);
+    }
+    all
+}
+
+/// Stretchers that all chairs have, side by side, the lowest of each first.
+fn stretchers(chairs: &[&Chair]) -> Vec<(String, Result<Vec<Element>, ElementError>)> {
+    let mut all = Vec::new();
+    for (side, word) in [
+        (Side::Front, "front"),
+        (Side::Left, "left"),
+        (Side::Right, "right"),
+        (Side::Back, "back"),
+        (Side::Middle, "middle"),
+    ] {
+        let of = |c: &Chair| -> Vec<Stretcher> {
+            c.stretchers.iter().copied().filter(|s| s.side == side).collect()
+        };
+        let bars: Vec<Vec<Stretcher>> = chairs.iter().map(|c| of(c)).collect();
+        let count = bars.iter().map(Vec::len).min().unwrap_or(0);
+        for n in 0..count {
+            let more = if n > 0 { format!(" {}", n + 1) } else { String::new() };
+            let elements = bars.iter().map(|b| fit::stretcher(&b[n])).collect();
+            all.push((format!("stretcher {word}{more}"), elements));
         }
     }
     all
@@ -177,7 +206,8 @@ fn matched(c: &Chair, slot: &Slot) -> Option<Leg> {
     let near = |l: &&Leg| outward(l, c).dot(slot.to);
     if legs.len() == 4 {
         // by order, not by angle: legs that cross or splay keep their names
-        let order = quadrants(legs);
+        let middle = |l: &Leg| 0.5 * (l.foot + l.head).truncate();
+        let order = legs::quadrants(&legs.iter().map(middle).collect::<Vec<_>>());
         let i = usize::from(slot.to.x > 0.0) + 2 * usize::from(slot.to.y > 0.0);
         if slot.to.x != 0.0 && slot.to.y != 0.0 {
             return order.map(|o| legs[o[i]]);
@@ -198,16 +228,3 @@ fn matched(c: &Chair, slot: &Slot) -> Option<Leg> {
     Some(half)
 }
 
-/// Which of four legs stands front left, front right, back left, back right: the two foremost by
-/// their middles, then by side.
-fn quadrants(legs: &[Leg]) -> Option<[usize; 4]> {
-    let middle = |i: &usize| 0.5 * (legs[*i].foot + legs[*i].head);
-    let mut by_y: Vec<usize> = (0..legs.len()).collect();
-    by_y.sort_by(|a, b| middle(a).y.total_cmp(&middle(b).y));
-    let [a, b, c, d] = <[usize; 4]>::try_from(by_y).ok()?;
-    let by_x = |a: usize, b: usize| {
-        if middle(&a).x <= middle(&b).x { [a, b] } else { [b, a] }
-    };
-    let ([fl, fr], [bl, br]) = (by_x(a, b), by_x(c, d));
-    Some([fl, fr, bl, br])
-}
