@@ -21,6 +21,8 @@ const COARSE: f64 = 60.0;
 const FINE: f64 = 90.0;
 /// Turns nearer than this to a quarter turn are made one, radians.
 const SNAP: f64 = 2.0 * PI / 180.0;
+/// Least side of a seat, a share of the height. Lower, poles are seats; bar stools have 0.3.
+const SLIM: f64 = 0.15;
 
 /// A shape looked at.
 pub(super) struct Look {
@@ -164,9 +166,16 @@ fn parts(
     let Some(seat) = seat::find(v, floor, top) else {
         return (None, vec!["no seat was found".to_owned()]);
     };
+    let tall = (top - floor + 1) as f64;
+    if seat.area.sqrt() < SLIM * tall {
+        return (None, vec!["too slim to sit on".to_owned()]);
+    }
     let base = base::find(v, &seat, floor, top);
     let middle = -v.lattice.origin.x / v.lattice.step;
     let (back, arms) = above::find(v, &seat, middle, floor, top);
+    if matches!(base.kind, Kind::Solid) && back.is_none() {
+        return (None, vec!["a body without parts".to_owned()]);
+    }
     let size = bounds.size();
     let flat = size.z / size.x.max(size.y);
     if flat < 0.75 {
@@ -262,8 +271,9 @@ fn stand_on(v: &Volume, base: &base::Base, seat: &Seat) -> Base {
     let leg = |t: &Track| Leg {
         foot: v.plan(t.point(floor)).extend(0.0),
         head: v.plan(t.point(head)).extend(board),
-        radius: t.radius * step,
-        reach: t.reach * step,
+        // samples half a step outside count as solid
+        radius: (t.radius - 0.5).max(0.5) * step,
+        reach: (t.reach - 0.5).max(0.5) * step,
     };
     let legs = |tracks: &[Track]| {
         let mut legs: Vec<Leg> = tracks.iter().map(leg).collect();

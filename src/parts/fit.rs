@@ -61,6 +61,17 @@ pub(super) fn slice(c: &Column, to: DVec2, low: f64, high: f64) -> Result<Elemen
     Element::rod(at.extend(low), at.extend(high.max(low + 1.0)), 0.5 * c.radius + ROOM)
 }
 
+/// All of a column.
+pub(super) fn shaft(c: &Column, low: f64, high: f64) -> Result<Element, ElementError> {
+    Element::rod(c.axis.extend(low), c.axis.extend(high.max(low + 1.0)), c.radius * LOOSE + ROOM)
+}
+
+/// All that a column stands on.
+pub(super) fn disc(c: &Column) -> Result<Element, ElementError> {
+    let reach = DVec2::splat(c.reach);
+    block((c.axis - reach).extend(0.0) - ROOM, (c.axis + reach).extend(c.hub.max(5.0)) + ROOM)
+}
+
 /// The spoke that stands for a foot in a direction, or a bar of the disc.
 pub(super) fn spoke(c: &Column, to: DVec2) -> Result<Element, ElementError> {
     let near = |s: &&DVec2| (**s - c.axis).normalize_or_zero().dot(to);

@@ -73,7 +73,20 @@ impl Mask {
 
     /// Gaps narrower than twice the radius filled.
     pub fn closed(&self, radius: f64) -> Mask {
-        self.dilated(radius).inverse().dilated(radius).inverse()
+        let wide = self.dilated(radius);
+        let disc = disc(radius);
+        let mut out = Self::empty(self.nx, self.ny);
+        for [x, y] in wide.cells() {
+            // what lies beyond the picture does not wear the border down
+            let kept = disc.iter().all(|&[dx, dy]| {
+                let (x, y) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
+                x >= self.nx || y >= self.ny || wide.get(x, y)
+            });
+            if kept {
+                out.set(x, y);
+            }
+        }
+        out
     }
 
     /// With the holes that nothing leads out of filled.

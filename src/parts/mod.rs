@@ -26,6 +26,8 @@ mod slabs;
 mod stretchers;
 mod volume;
 
+#[cfg(test)]
+mod tests;
 
 pub use chair::{Arm, Back, Base, Chair, Column, Leg, Pose, Seat, Stretcher};
 pub use stretchers::Side;

@@ -41,7 +41,8 @@ pub(super) fn pair(chairs: &[&Chair]) -> Vec<Paired> {
         let legs = |part: Part| chairs.iter().map(|c| strut(c, &slot, part)).collect();
         let name = |what: &str| format!("{what} {}", slot.name).trim_end().to_owned();
         if column {
-            put(name("leg"), legs(Part::Upper), sure(2), Note::Bundle);
+            let what = if slot.name.is_empty() { "column" } else { "leg" };
+            put(name(what), legs(Part::Upper), sure(2), Note::Bundle);
             put(name("foot"), legs(Part::Foot), sure(2), Note::Bundle);
         } else {
             let note = if mixed(chairs) { Note::Mixed } else { Note::Found };
@@ -162,6 +163,10 @@ fn outward(leg: &Leg, chair: &Chair) -> DVec2 {
 fn strut(c: &Chair, slot: &Slot, part: Part) -> Result<Element, ElementError> {
     let board = c.seat.top - c.seat.thickness;
     match &c.base {
+        Base::Column(col) if slot.name.is_empty() && part == Part::Foot => fit::disc(col),
+        Base::Column(col) if slot.name.is_empty() && part == Part::Upper => {
+            fit::shaft(col, col.hub.min(0.8 * board), board)
+        }
         Base::Column(col) if part == Part::Foot => fit::spoke(col, slot.to),
         Base::Column(col) if part == Part::Upper => {
             fit::slice(col, slot.to, col.hub.min(0.8 * board), board)

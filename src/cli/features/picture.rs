@@ -14,11 +14,12 @@ const SIDE: u32 = 420;
 /// Share of the elements' colour in a pixel.
 const VEIL: f32 = 0.45;
 /// Colours of kinds of features, by the word their names begin with.
-const COLORS: [(&str, [u8; 3]); 6] = [
+const COLORS: [(&str, [u8; 3]); 7] = [
     ("seat", [220, 60, 50]),
     ("back", [40, 150, 60]),
     ("arm", [235, 140, 20]),
     ("leg", [40, 90, 220]),
+    ("column", [40, 90, 220]),
     ("foot", [150, 60, 200]),
     ("", [20, 160, 170]),
 ];
