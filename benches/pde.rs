@@ -44,9 +44,12 @@ fn sequences(c: &mut Criterion) -> Result<(), SurfaceError> {
         let morph = |a, b| PdeMorph::new(a, b, MorphOptions { method, ..Default::default() });
         let made = morph(&from, &to)?;
         group.throughput(Throughput::Elements(u64::from(9 * POINTS * POINTS)));
-        group.bench_function(BenchmarkId::new("frame of 9 x 40 x 40", format!("{method:?}")), |b| {
-            b.iter(|| Ok::<_, SurfaceError>(made.frame(black_box(0.4))?.grid(&us, &vs)));
-        });
+        group.bench_function(
+            BenchmarkId::new("frame of 9 x 40 x 40", format!("{method:?}")),
+            |b| {
+                b.iter(|| Ok::<_, SurfaceError>(made.frame(black_box(0.4))?.grid(&us, &vs)));
+            },
+        );
         group.throughput(Throughput::Elements(u64::from(FRAMES * 9 * POINTS * POINTS)));
         group.bench_function(BenchmarkId::new("sequence of 13", format!("{method:?}")), |b| {
             b.iter(|| {

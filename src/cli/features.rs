@@ -94,7 +94,8 @@ pub fn words(guess: &Guess) -> String {
         None => "no chair; slabs from bottom to top".to_owned(),
     };
     let turn = guess.pose.turn.to_degrees();
-    let turned = if turn.abs() > 0.005 { format!("; turned by {turn:.0} degrees") } else { String::new() };
+    let turned =
+        if turn.abs() > 0.005 { format!("; turned by {turn:.0} degrees") } else { String::new() };
     format!("{found} (confidence {:.2}){turned}", guess.confidence)
 }
 
@@ -102,6 +103,7 @@ fn shape(guess: &Guess) -> Value {
     json!({
         "name": guess.name,
         "chair": guess.chair.is_some(),
+        "seat_mm": guess.chair.as_ref().map(|c| c.seat.top),
         "found": words(guess),
         "confidence": guess.confidence,
         "turn_deg": guess.pose.turn.to_degrees(),

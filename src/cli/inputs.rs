@@ -3,8 +3,7 @@
 use super::failure::Failure;
 use clap::Args;
 use fieldgraft::recipe::{
-    LengthUnit, MesherEntry, PlainOr, ShapeEntry, SignEntry, UpAxis, kind, read_text,
-    word,
+    LengthUnit, MesherEntry, PlainOr, ShapeEntry, SignEntry, UpAxis, kind, read_text, word,
 };
 use std::path::Path;
 

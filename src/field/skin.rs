@@ -5,9 +5,9 @@
 //! solid, by the winding number; the rest are *sheets*, to which the unsigned distance is taken, less
 //! half the thickness. A Klein bottle is closed and yet a sheet: it has one side.
 
+use super::Shared;
 use super::csg::{Join, Joined};
 use super::mesh::{MeshField, MeshFieldError, MeshOptions, Sign, Thicken, Which};
-use super::Shared;
 use crate::job::{Cancelled, Job};
 use crate::mesh::TriMesh;
 use std::sync::Arc;

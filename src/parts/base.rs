@@ -205,7 +205,8 @@ fn spokes(
             run.push((start + n) as f64 + 0.5);
         } else if !run.is_empty() {
             let middle = run.iter().sum::<f64>() / run.len() as f64;
-            lobes.push(centre + r * DVec2::from_angle(middle / BINS as f64 * std::f64::consts::TAU));
+            lobes
+                .push(centre + r * DVec2::from_angle(middle / BINS as f64 * std::f64::consts::TAU));
             run.clear();
         }
     }

@@ -51,17 +51,15 @@ pub(super) fn look(field: &dyn Field, job: &dyn Job) -> Result<Option<Look>, Can
 }
 
 /// A first look at the shape where it is, with its lowest and highest levels.
-fn coarse(
-    field: &dyn Field,
-    job: &dyn Job,
-) -> Result<Option<(Volume, usize, usize)>, Cancelled> {
+fn coarse(field: &dyn Field, job: &dyn Job) -> Result<Option<(Volume, usize, usize)>, Cancelled> {
     let mut space = field.support();
     for _ in 0..3 {
         let longest = space.size().max_element();
         if space.is_empty() || !space.is_finite() || longest <= 0.0 {
             return Ok(None);
         }
-        let v = Volume::sample(field, Stand::KEPT, Lattice::covering(&space, longest / COARSE), job)?;
+        let v =
+            Volume::sample(field, Stand::KEPT, Lattice::covering(&space, longest / COARSE), job)?;
         let matter = Aabb::of(v.solids().map(|p| v.point(p)));
         if matter.is_empty() {
             return Ok(None);
@@ -84,8 +82,7 @@ fn lattice(bounds: &Aabb) -> Lattice {
     let across = (half / step).ceil() + ROOM;
     let deep = (size.y / step).ceil() + 2.0 * ROOM;
     let high = (size.z / step).ceil() + 2.0 * ROOM;
-    let origin =
-        DVec3::new(-across, bounds.centre().y / step - 0.5 * deep, 0.5 - ROOM) * step;
+    let origin = DVec3::new(-across, bounds.centre().y / step - 0.5 * deep, 0.5 - ROOM) * step;
     let size = [2.0 * across, deep, high].map(|n| n as u32 + 1);
     Lattice { origin, step, size }
 }
@@ -147,7 +144,9 @@ fn choose(v: &Volume, mirror: &Mirror, seat: Option<f64>, back: Option<DVec2>) -
         if a.score > best.score {
             (best, other) = (near(a), near(b));
         }
-        if best.score - other.score < 0.10 && best.score - 0.25 * across(&best) < other.score - 0.25 * across(&other) {
+        if best.score - other.score < 0.10
+            && best.score - 0.25 * across(&best) < other.score - 0.25 * across(&other)
+        {
             (best, other) = (other, best);
         }
     }

@@ -100,11 +100,7 @@ pub(super) fn struts(base: &Base) -> &[Leg] {
 
 /// An element moved from the seat of one chair to that of another: where a part would be on a
 /// chair that has none.
-pub(super) fn transplanted(
-    e: &Element,
-    from: &Chair,
-    to: &Chair,
-) -> Result<Element, ElementError> {
+pub(super) fn transplanted(e: &Element, from: &Chair, to: &Chair) -> Result<Element, ElementError> {
     let (a, b) = (&from.seat, &to.seat);
     let middle = |s: &Seat| (0.5 * (s.low + s.high)).extend(s.top);
     let ratio = ((b.high - b.low) / (a.high - a.low).max(DVec2::ONE)).extend(1.0);

@@ -63,12 +63,10 @@ fn tracks(levels: &[Level], count: usize, floor: usize, high: f64) -> Vec<Track>
     seeds
         .iter()
         .map(|seed| {
-            let spot =
-                Spot { z: levels[middle].k as f64, at: seed.centre(), area: seed.area() };
+            let spot = Spot { z: levels[middle].k as f64, at: seed.centre(), area: seed.area() };
             let up = follow(levels, spot, middle + 1..levels.len(), high);
             let down = follow(levels, spot, (0..middle).rev(), high);
-            let spots: Vec<Spot> =
-                down.iter().rev().chain([&spot]).chain(&up).copied().collect();
+            let spots: Vec<Spot> = down.iter().rev().chain([&spot]).chain(&up).copied().collect();
             fit(&spots, floor)
         })
         .collect()
@@ -158,8 +156,7 @@ pub(super) fn quadrants(middles: &[DVec2]) -> Option<[usize; 4]> {
     let mut by_y: Vec<usize> = (0..middles.len()).collect();
     by_y.sort_by(|a, b| middles[*a].y.total_cmp(&middles[*b].y));
     let [a, b, c, d] = <[usize; 4]>::try_from(by_y).ok()?;
-    let by_x =
-        |a: usize, b: usize| if middles[a].x <= middles[b].x { [a, b] } else { [b, a] };
+    let by_x = |a: usize, b: usize| if middles[a].x <= middles[b].x { [a, b] } else { [b, a] };
     let ([fl, fr], [bl, br]) = (by_x(a, b), by_x(c, d));
     Some([fl, fr, bl, br])
 }

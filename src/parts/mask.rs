@@ -93,9 +93,7 @@ impl Mask {
     pub fn filled(&self) -> Mask {
         let mut outside = Self::empty(self.nx, self.ny);
         let mut open = Vec::new();
-        let border = |x: usize, y: usize| {
-            x == 0 || y == 0 || x + 1 == self.nx || y + 1 == self.ny
-        };
+        let border = |x: usize, y: usize| x == 0 || y == 0 || x + 1 == self.nx || y + 1 == self.ny;
         for y in 0..self.ny {
             for x in 0..self.nx {
                 if border(x, y) && !self.get(x, y) {
@@ -193,10 +191,10 @@ impl Region {
         let along = DVec2::from_angle(angle);
         let across = along.perp();
         let reach = |axis: DVec2| {
-            let (lo, hi) = self.points().map(|p| p.dot(axis)).fold(
-                (f64::INFINITY, f64::NEG_INFINITY),
-                |(lo, hi), x| (lo.min(x), hi.max(x)),
-            );
+            let (lo, hi) = self
+                .points()
+                .map(|p| p.dot(axis))
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)));
             hi - lo + 1.0
         };
         DVec2::new(reach(along), reach(across))

@@ -100,10 +100,7 @@ pub enum Note {
 ///
 /// # Errors
 /// Cancelled.
-pub fn suggest(
-    shapes: &[(&str, &dyn Field)],
-    job: &dyn Job,
-) -> Result<Suggestion, Cancelled> {
+pub fn suggest(shapes: &[(&str, &dyn Field)], job: &dyn Job) -> Result<Suggestion, Cancelled> {
     let mut guesses = Vec::with_capacity(shapes.len());
     for (name, field) in shapes {
         guesses.push(guess(name, find::look(*field, job)?));

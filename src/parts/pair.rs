@@ -25,7 +25,12 @@ pub(super) fn pair(chairs: &[&Chair]) -> Vec<Paired> {
             all.push(Paired { name, elements, confidence: sure, note });
         }
     };
-    put("seat".to_owned(), chairs.iter().map(|c| fit::seat(&c.seat)).collect(), sure(1), Note::Found);
+    put(
+        "seat".to_owned(),
+        chairs.iter().map(|c| fit::seat(&c.seat)).collect(),
+        sure(1),
+        Note::Found,
+    );
     let backs = |c: &Chair| c.back.map(|b| fit::back(&c.seat, &b));
     if let Some((elements, note)) = shared(chairs, backs) {
         put("back".to_owned(), elements, sure(0), note);
@@ -177,10 +182,9 @@ fn strut(c: &Chair, slot: &Slot, part: Part) -> Result<Element, ElementError> {
         ),
         base => match matched(c, slot) {
             Some(leg) => fit::leg(&piece(&leg, part)),
-            None if matches!(base, Base::Solid) && slot.name.is_empty() => fit::block(
-                c.seat.low.extend(0.0),
-                c.seat.high.extend(board.max(1.0)),
-            ),
+            None if matches!(base, Base::Solid) && slot.name.is_empty() => {
+                fit::block(c.seat.low.extend(0.0), c.seat.high.extend(board.max(1.0)))
+            }
             None => {
                 let corner = fit::corner(&c.seat, slot.to)?;
                 let (low, high) = (corner.centre - corner.half, corner.centre + corner.half);
@@ -232,4 +236,3 @@ fn matched(c: &Chair, slot: &Slot) -> Option<Leg> {
     };
     Some(half)
 }
-

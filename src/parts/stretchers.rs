@@ -58,9 +58,7 @@ pub(super) fn find(v: &Volume, legs: [&Track; 4], floor: usize, under: usize) ->
     all.extend(bars(&sections, first, most, Side::Left, ends(fl, bl)));
     all.extend(bars(&sections, first, most, Side::Right, ends(fr, br)));
     all.extend(bars(&sections, first, most, Side::Back, ends(bl, br)));
-    let middle = |k: f64| {
-        [0.5 * (fl.point(k) + bl.point(k)), 0.5 * (fr.point(k) + br.point(k))]
-    };
+    let middle = |k: f64| [0.5 * (fl.point(k) + bl.point(k)), 0.5 * (fr.point(k) + br.point(k))];
     let beside = all.iter().any(|b| b.side == Side::Left);
     if beside {
         all.extend(bars(&sections, first, most, Side::Middle, middle));

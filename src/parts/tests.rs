@@ -101,7 +101,8 @@ fn a_chair_of_known_size() {
 #[test]
 fn the_pose_undoes_turns_and_shifts() {
     let parts = [chair(), arms()].concat();
-    for (turn, shift) in [(90.0, [0.0; 3]), (180.0, [4000.0, -70.0, 900.0]), (37.0, [5.0, 6.0, -800.0])]
+    for (turn, shift) in
+        [(90.0, [0.0; 3]), (180.0, [4000.0, -70.0, 900.0]), (37.0, [5.0, 6.0, -800.0])]
     {
         let s = look(&solid(&parts, 1.0, turn, shift));
         let guess = &s.shapes[0];
@@ -233,12 +234,8 @@ impl Field for Nothing {
 
 #[test]
 fn what_is_no_chair_is_said_to_be_none() {
-    let ball = solid(
-        &[Element::capsule(DVec3::ZERO, DVec3::Z, 200.0).unwrap()],
-        1.0,
-        0.0,
-        [0.0; 3],
-    );
+    let ball =
+        solid(&[Element::capsule(DVec3::ZERO, DVec3::Z, 200.0).unwrap()], 1.0, 0.0, [0.0; 3]);
     let plate = solid(&[block([-300.0, -200.0, 0.0], [300.0, 200.0, 4.0])], 1.0, 0.0, [0.0; 3]);
     let pole = solid(&[rod([0.0; 3], [0.0, 0.0, 900.0], 5.0)], 1.0, 0.0, [0.0; 3]);
     for f in [&ball, &plate, &pole] {
@@ -278,7 +275,8 @@ fn masks_close_fill_and_split() {
 
 #[test]
 fn lines_withstand_outliers() {
-    let mut points: Vec<(f64, f64)> = (0..20).map(|i| (f64::from(i), 3.0 + 0.5 * f64::from(i))).collect();
+    let mut points: Vec<(f64, f64)> =
+        (0..20).map(|i| (f64::from(i), 3.0 + 0.5 * f64::from(i))).collect();
     points[4].1 = 90.0;
     let (a, b) = line(&points);
     assert!((a - 3.0).abs() < 0.1 && (b - 0.5).abs() < 0.01, "{a} {b}");

@@ -122,7 +122,8 @@ impl Draft {
             notes.extend(found);
             shapes.push(shape);
         }
-        let parts = Parts { recipe: &recipe, beside: &beside, shapes: &shapes, meshes: &meshes, step };
+        let parts =
+            Parts { recipe: &recipe, beside: &beside, shapes: &shapes, meshes: &meshes, step };
         let variants = recipe
             .variants()
             .iter()

@@ -7,7 +7,8 @@ use crate::element::{Element, align};
 use crate::morph::{Blend, Form, Frames, Inner, Part, Plan, SpaceTime};
 use crate::recipe::{
     BlendEntry, ElementShape, FeatureEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry,
-    OneOrMany, PlainOr, Problem, Recipe, SpaceTimeEntry, SurfaceMethod, WeightingEntry, WeightingKind,
+    OneOrMany, PlainOr, Problem, Recipe, SpaceTimeEntry, SurfaceMethod, WeightingEntry,
+    WeightingKind,
 };
 use crate::warp::Deform;
 use crate::weight::Weighting;
@@ -31,7 +32,10 @@ pub(super) fn shape_names(
     let key = if entry.between.is_some() { "between" } else { "among" };
     let at = format!("{at}.{key}");
     if names.is_empty() {
-        return Err(Problem::new(at, "no shape; give one to have it alone, or two or more to morph"));
+        return Err(Problem::new(
+            at,
+            "no shape; give one to have it alone, or two or more to morph",
+        ));
     }
     for (i, name) in names.iter().enumerate() {
         if names[..i].contains(name) {

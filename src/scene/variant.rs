@@ -108,7 +108,9 @@ impl Variant {
     pub fn morph(&self, t: f64, job: &dyn Job) -> Result<Box<dyn Morph>, MorphError> {
         let (plan, dominant) = match &self.way {
             Way::Still(field) => return Ok(Box::new(Moment(field.clone()))),
-            Way::Moving(shape) | Way::Pair(shape) => return Ok(Box::new(Moment(shape.at(t, job)?.exact.clone()))),
+            Way::Moving(shape) | Way::Pair(shape) => {
+                return Ok(Box::new(Moment(shape.at(t, job)?.exact.clone())));
+            }
             Way::Plan { plan, dominant } => (plan, *dominant),
         };
         let mut plan = Plan::clone(plan);
@@ -210,7 +212,8 @@ fn heaviest(plan: &Plan, t: f64) -> usize {
 fn times(entry: &MorphEntry, moves: bool, at: &str) -> Result<Vec<f64>, Problem> {
     match &entry.t {
         Some(t) if !moves && t.0.len() > 1 => {
-            let why = "nothing depends on t: no shape moves and the weights are fixed; give one time";
+            let why =
+                "nothing depends on t: no shape moves and the weights are fixed; give one time";
             Err(Problem::new(format!("{at}.t"), why))
         }
         _ => Ok(asked(entry)),

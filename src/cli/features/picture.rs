@@ -5,7 +5,9 @@ use fieldgraft::element::tessellate;
 use fieldgraft::mesh::TriMesh;
 use fieldgraft::num::Aabb;
 use fieldgraft::parts::{Guess, Suggestion};
-use fieldgraft::picture::{Cell, Image, Layout, PictureError, Style, View, render, save_png, sheet};
+use fieldgraft::picture::{
+    Cell, Image, Layout, PictureError, Style, View, render, save_png, sheet,
+};
 use glam::{DAffine3, DQuat, DVec3};
 use std::path::Path;
 

@@ -88,7 +88,8 @@ impl Fin {
 
     fn placed(&self, by: &DAffine3) -> Boundary {
         let [out, back, up] = self.axes;
-        let frame = *by * DAffine3::from_mat3_translation(DMat3::from_cols(out, back, up), self.root);
+        let frame =
+            *by * DAffine3::from_mat3_translation(DMat3::from_cols(out, back, up), self.root);
         let get = |list: &[f64], n: usize| list.get(n).copied().unwrap_or(0.0);
         let face = |side: f64| -> Vec<DVec3> {
             (0..self.span.len().max(self.middle.len()).max(self.half.len()))
