@@ -41,7 +41,9 @@ fn sequences(c: &mut Criterion) -> Result<(), SurfaceError> {
     let [from, to] = [PdeSurface::new(&curves[0], plain)?, PdeSurface::new(&curves[1], plain)?];
     let methods = [Method::Boundary, Method::Modes, Method::Combined, Method::Spine];
     for method in methods {
-        let morph = |a, b| PdeMorph::new(a, b, MorphOptions { method, ..Default::default() });
+        let morph = |a: &PdeSurface, b: &PdeSurface| {
+            PdeMorph::new(a, b, MorphOptions { method, ..Default::default() })
+        };
         let made = morph(&from, &to)?;
         group.throughput(Throughput::Elements(u64::from(9 * POINTS * POINTS)));
         group.bench_function(

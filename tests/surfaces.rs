@@ -28,7 +28,7 @@ fn a_dolphin_is_one_solid() {
         let mesh = solid(fin);
         let health = check::inspect(&mesh, &check::Options::default());
         assert!(health.closed && mesh.volume() > 5000.0, "fin {fin}");
-        let (within, without): (Vec<_>, Vec<_>) =
+        let (within, without): (Vec<&_>, Vec<&_>) =
             mesh.points.iter().partition(|p| inside.exact(**p) > 0.5);
         assert!(within.len() > 8 && without.len() > 8, "fin {fin} stands in the body");
     }

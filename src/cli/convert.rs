@@ -208,5 +208,12 @@ pub fn names(output: &str, picture: Option<String>) -> Names {
     let folder = PathBuf::new();
     // `hybrid-{t}.stl` has its report in `hybrid.run.json`
     let report = report.replace("-.run.json", ".run.json").replace("_.run.json", ".run.json");
-    Names { folder, mesh: output.to_owned(), picture, report, unnamed: String::new() }
+    Names {
+        folder,
+        mesh: output.to_owned(),
+        picture,
+        animations: vec![],
+        report,
+        unnamed: String::new(),
+    }
 }

@@ -31,7 +31,7 @@ pub struct Morph {
     /// Weights of the meshes instead of a time, such as 2,1,1
     #[arg(long, value_delimiter = ',', value_name = "W", conflicts_with = "t")]
     weights: Vec<f64>,
-    /// How: linear, or space-time (the default)
+    /// How: linear, level-set, transport, or space-time (the default)
     #[arg(long, value_name = "METHOD", value_parser = method)]
     method: Option<MethodEntry>,
     /// How the meshes are laid over each other: box (all stand where the first does), pose (each as
@@ -75,8 +75,13 @@ fn times(text: &str) -> Result<Times, String> {
 
 fn method(text: &str) -> Result<MethodEntry, String> {
     match word(text)? {
-        m @ (MethodEntry::Linear | MethodEntry::SpaceTime | MethodEntry::Auto) => Ok(m),
-        _ => Err("this method needs features; write a recipe for `fieldgraft run`".to_owned()),
+        MethodEntry::FeatureVolume
+        | MethodEntry::Graft
+        | MethodEntry::Group
+        | MethodEntry::Warp => {
+            Err("this method needs features; write a recipe for `fieldgraft run`".to_owned())
+        }
+        plain => Ok(plain),
     }
 }
 

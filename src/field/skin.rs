@@ -50,7 +50,11 @@ pub struct Sides {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SkinError {
     /// Sheets without a thickness.
-    #[error("the surface encloses nothing: {}; give it a thickness", .0.story())]
+    #[error(
+        "the surface encloses nothing: {}; give it a thickness{}",
+        .0.story(),
+        if .0.open_edges > 0 { ", or skin = \"solid\" to close its holes by winding number" } else { "" }
+    )]
     Sheet(Sides),
     /// What the field of its triangles says.
     #[error(transparent)]

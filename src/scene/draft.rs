@@ -2,11 +2,11 @@
 
 use super::live::{self, Placed, Stop, Want};
 use super::variant::{Parts, Variant, asked};
-use super::{Scene, SceneError, mesh_element, plan};
+use super::{Scene, SceneError, mesh_element, plan, scheme};
 use crate::grid::Lattice;
 use crate::job::{self, Job};
 use crate::num::Aabb;
-use crate::recipe::{GridEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join};
+use crate::recipe::{GridEntry, MorphEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -93,6 +93,19 @@ impl Draft {
         &self.recipe
     }
 
+    /// Memory (bytes) that the methods need beside the shapes and the frames, all held at once.
+    pub fn method_bytes(&self) -> f64 {
+        let domain = hull(&self.placed);
+        let bytes = |(at, entry): &(String, MorphEntry)| -> Option<f64> {
+            let names = plan::shape_names(entry, &self.recipe, at).ok()?;
+            let method = plan::method(entry, &names, &self.recipe, at).ok()?;
+            let of: Vec<&str> = names.iter().map(String::as_str).collect();
+            let scheme = scheme::scheme(entry, method, &of, self.step, &self.recipe).ok()?;
+            Some(scheme.bytes(&domain, of.len()))
+        };
+        self.recipe.variants().iter().filter_map(bytes).sum()
+    }
+
     fn padding(&self) -> f64 {
         self.longest() * self.recipe.grid.padding.unwrap_or(GridEntry::PADDING)
     }
@@ -102,6 +115,19 @@ impl Draft {
     /// # Errors
     /// What is wrong in the recipe or a file, by its key; cancelled.
     pub fn build(self, job: &dyn Job) -> Result<Scene, SceneError> {
+        let (scene, refused) = self.build_each(job)?;
+        refused.into_iter().next().map_or(Ok(scene), |(_, why)| Err(why))
+    }
+
+    /// [`Draft::build`], but a hybrid that cannot be planned does not stop the others: its name and
+    /// what is wrong come back beside the scene.
+    ///
+    /// # Errors
+    /// What is wrong with the shapes or the grid, by its key; cancelled.
+    pub fn build_each(
+        self,
+        job: &dyn Job,
+    ) -> Result<(Scene, Vec<(String, SceneError)>), SceneError> {
         let (padding, step) = (self.padding(), self.step);
         let Self { recipe, source, beside, placed, uses, .. } = self;
         let locate = |p: Problem| SceneError::Bad(source.locate(p));
@@ -124,17 +150,19 @@ impl Draft {
         }
         let parts =
             Parts { recipe: &recipe, beside: &beside, shapes: &shapes, meshes: &meshes, step };
-        let variants = recipe
-            .variants()
-            .iter()
-            .map(|(at, entry)| Variant::new(entry, at, &parts))
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(locate)?;
+        let (mut variants, mut refused) = (Vec::new(), Vec::new());
+        for (at, entry) in recipe.variants() {
+            match Variant::new(&entry, &at, &parts) {
+                Ok(variant) => variants.push(variant),
+                Err(p) => refused.push((entry.name, locate(p))),
+            }
+        }
         notes.extend(variants.iter().flat_map(|v| v.notes.clone()));
-        let domain = variants.iter().fold(Aabb::EMPTY, |b, v| b.hull(v.domain()));
+        // where no hybrid can be planned, the shapes themselves
+        let domain = variants.iter().map(Variant::domain).reduce(Aabb::hull).unwrap_or(box_);
         let lattice = Lattice::covering(&domain.grow(padding), step);
         fits(&lattice).map_err(locate)?;
-        Ok(Scene { name: recipe.name, shapes, variants, lattice, notes, inputs })
+        Ok((Scene { name: recipe.name, shapes, variants, lattice, notes, inputs }, refused))
     }
 }
 
@@ -187,7 +215,8 @@ fn longest(placed: &[Placed]) -> f64 {
     hull(placed).size().max_element()
 }
 
-fn step(grid: &GridEntry, longest: f64) -> f64 {
+/// Side of a cell, mm, where the longest side of all is known.
+pub(super) fn step(grid: &GridEntry, longest: f64) -> f64 {
     let cells = grid.resolution.unwrap_or(GridEntry::RESOLUTION);
     grid.voxel.unwrap_or(longest / f64::from(cells))
 }

@@ -1,3 +1,5 @@
+/// Files that play the frames of a morph.
+mod animation;
 /// `check` and its JSON.
 mod check;
 /// `convert`: meshes and solids in, meshes and fields out.
@@ -10,6 +12,8 @@ mod features;
 mod make;
 /// The recipes and solids that ship with the crate.
 mod shipped;
+/// `surface`: files of every kind, their samples and meshes, and what is wrong with them.
+mod surface;
 /// Surface files as recipes, and as shapes among others.
 mod surfaces;
 /// `schema`, `completions`, `man`.
