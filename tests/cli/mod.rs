@@ -6,6 +6,8 @@ mod check;
 mod convert;
 /// What is wrong, and what is said about it.
 mod errors;
+/// `features suggest`: parts found, recipes written.
+mod features;
 /// `morph` and `run`: files, reports, limits.
 mod make;
 /// The recipes and solids that ship with the crate.
