@@ -129,10 +129,10 @@ mod tests {
         let mut one = vec![0.0; x * y * z];
         one[2 + x * (3 + y)] = 2.0;
         let got = gauss.from(one.clone(), &Quiet).unwrap();
-        for n in 0..got.len() {
+        for (n, got) in got.iter().enumerate() {
             let d = [n % x, n / x % y, n / (x * y)].map(|i| i as f64);
             let r2 = (d[0] - 2.0).powi(2) + (d[1] - 3.0).powi(2) + (d[2] - 1.0).powi(2);
-            assert!((got[n] - 2.0 * (-r2 / gamma).exp()).abs() < 1e-14);
+            assert!((got - 2.0 * (-r2 / gamma).exp()).abs() < 1e-14);
         }
         let some: Vec<f64> = (0..x * y * z).map(|n| ((n * 37) % 11) as f64).collect();
         let whole = gauss.from(some.clone(), &Quiet).unwrap();
