@@ -243,10 +243,8 @@ fn arm_place(v: &Volume, a: &above::Arm) -> Arm {
 fn bars(v: &Volume, base: &base::Base, under: usize, floor: usize) -> Vec<Stretcher> {
     let Kind::Legs(tracks) = &base.kind else { return Vec::new() };
     let low = floor as f64;
-    let middle = |t: &Track| 0.5 * (t.point(low) + t.point(under as f64));
-    let Some(order) = legs::quadrants(&tracks.iter().map(middle).collect::<Vec<_>>()) else {
-        return Vec::new();
-    };
+    let feet: Vec<DVec2> = tracks.iter().map(|t| t.point(low)).collect();
+    let Some(order) = legs::quadrants(&feet) else { return Vec::new() };
     if crossed(tracks, low, under as f64) {
         return Vec::new();
     }
@@ -300,10 +298,10 @@ fn stand_on(v: &Volume, base: &base::Base, seat: &Seat) -> Base {
     }
 }
 
-/// How far a leg stands round the seat's centre, clockwise seen from above, from straight ahead on:
+/// How far a leg's foot stands round the seat's centre, clockwise seen from above, from straight ahead on:
 /// the front left leg comes first.
 fn turn_of(leg: &Leg, centre: DVec2) -> f64 {
-    let d = (0.5 * (leg.foot + leg.head)).truncate() - centre;
+    let d = leg.foot.truncate() - centre;
     (-d.y.atan2(d.x) - PI / 2.0).rem_euclid(2.0 * PI)
 }
 

@@ -152,11 +152,11 @@ fn fit(spots: &[Spot], floor: usize) -> Track {
 
 /// Which of four places in the plan is front left, front right, back left, back right: the two
 /// foremost first, then by side.
-pub(super) fn quadrants(middles: &[DVec2]) -> Option<[usize; 4]> {
-    let mut by_y: Vec<usize> = (0..middles.len()).collect();
-    by_y.sort_by(|a, b| middles[*a].y.total_cmp(&middles[*b].y));
+pub(super) fn quadrants(feet: &[DVec2]) -> Option<[usize; 4]> {
+    let mut by_y: Vec<usize> = (0..feet.len()).collect();
+    by_y.sort_by(|a, b| feet[*a].y.total_cmp(&feet[*b].y));
     let [a, b, c, d] = <[usize; 4]>::try_from(by_y).ok()?;
-    let by_x = |a: usize, b: usize| if middles[a].x <= middles[b].x { [a, b] } else { [b, a] };
+    let by_x = |a: usize, b: usize| if feet[a].x <= feet[b].x { [a, b] } else { [b, a] };
     let ([fl, fr], [bl, br]) = (by_x(a, b), by_x(c, d));
     Some([fl, fr, bl, br])
 }

@@ -10,7 +10,22 @@
 //! - A *base* is what carries the seat: legs, a column, runners, or a solid body.
 //! - *Confidence* is a number in [0, 1]; below [`DOUBTFUL`] the suggestion is a guess.
 //!
-//! What is no chair gets three slabs from top to bottom, with a low confidence.
+//! What is no chair gets three slabs from bottom to top, with a low confidence.
+//!
+//! ```
+//! use fieldgraft::{element::Element, field::csg::Join, field::solid::{Assembly, Part}, job::Quiet, parts};
+//! let rod = |x: f64, y: f64, top: f64, r| Element::rod([x, y, 0.0].into(), [x, y, top].into(), r);
+//! let mut stool = vec![Element::rod([0.0, 0.0, 430.0].into(), [0.0, 0.0, 460.0].into(), 190.0)?];
+//! for (x, y) in [(-110.0, -110.0), (110.0, -110.0), (-110.0, 110.0), (110.0, 110.0)] {
+//!     stool.push(rod(x, y, 435.0, 18.0)?);
+//! }
+//! let part = |element| Part { element, round: 0.0, join: Join::Add };
+//! let stool = Assembly::new(&stool.into_iter().map(part).collect::<Vec<_>>())?;
+//! let found = parts::suggest(&[("stool", &stool)], &Quiet)?;
+//! assert!(found.shapes[0].chair.as_ref().is_some_and(|c| (c.seat.top - 460.0).abs() < 10.0));
+//! assert_eq!(found.features.len(), 5, "the seat and four legs");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod above;
 mod base;
@@ -96,7 +111,8 @@ pub enum Note {
     Slab,
 }
 
-/// Suggests poses and features for some shapes, named and given as fields in mm, z up.
+/// Suggests poses and features for some shapes, named and given as fields in mm, z up. Each is looked
+/// up some hundred thousand times: a sampled form is much quicker than a mesh.
 ///
 /// # Errors
 /// Cancelled.

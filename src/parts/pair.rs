@@ -157,11 +157,11 @@ fn slots(chairs: &[&Chair]) -> Vec<Slot> {
     }
 }
 
-/// Direction of a leg from the middle of all legs' middles, as seen from the seat.
+/// Direction of a leg's foot from the middle of the seat.
 fn outward(leg: &Leg, chair: &Chair) -> DVec2 {
     let centre = 0.5 * (chair.seat.low + chair.seat.high);
     let size = (chair.seat.high - chair.seat.low).max(DVec2::ONE);
-    ((0.5 * (leg.foot + leg.head).truncate() - centre) / size).normalize_or_zero()
+    ((leg.foot.truncate() - centre) / size).normalize_or_zero()
 }
 
 /// The element of a chair that stands for the leg of a slot.
@@ -215,8 +215,8 @@ fn matched(c: &Chair, slot: &Slot) -> Option<Leg> {
     let near = |l: &&Leg| outward(l, c).dot(slot.to);
     if legs.len() == 4 {
         // by order, not by angle: legs that cross or splay keep their names
-        let middle = |l: &Leg| 0.5 * (l.foot + l.head).truncate();
-        let order = legs::quadrants(&legs.iter().map(middle).collect::<Vec<_>>());
+        let feet: Vec<DVec2> = legs.iter().map(|l| l.foot.truncate()).collect();
+        let order = legs::quadrants(&feet);
         let i = usize::from(slot.to.x > 0.0) + 2 * usize::from(slot.to.y > 0.0);
         if slot.to.x != 0.0 && slot.to.y != 0.0 {
             return order.map(|o| legs[o[i]]);

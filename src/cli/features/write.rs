@@ -19,7 +19,8 @@ pub(super) fn recipe(
     let _ = writeln!(
         out,
         "# Suggested by `fieldgraft features suggest`: look at the elements, then edit what is wrong.\n\
-         # Millimetres, z up; fronts look to -y, left is -x, floors are at z = 0.\n\
+         # Millimetres, z up; fronts look to -y, left is -x, floors are at z = 0. The elements fit the\n\
+         # shapes as they stand here: for other sizes suggest again, with --height.\n\
          version = 1\nname = {}\n\n[grid]\nresolution = 128",
         quoted(&names.join(" x "))
     );
