@@ -136,7 +136,9 @@ impl Shell {
             let (halves, middle) = piece.halves(other);
             max = max.max(middle);
             let edge = within(max);
-            open.extend(halves.map(|h| h.bounded(other, edge)).into_iter().filter(|h| h.bound > edge));
+            open.extend(
+                halves.map(|h| h.bounded(other, edge)).into_iter().filter(|h| h.bound > edge),
+            );
         }
         let over = open.peek().map_or(0.0, |worst| worst.bound - max);
         // what was left out is within the bracket

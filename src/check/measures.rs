@@ -112,7 +112,10 @@ fn bodies_stand_when_their_centre_is_over_their_feet() {
     let margin = stance(&leaning).unwrap().margin;
     assert!((margin + 0.5f64.sqrt()).abs() < 1e-12, "{margin}");
     let balanced = |m: &TriMesh| inspect(m, &Options::default()).balanced;
-    assert_eq!((balanced(&leaning), balanced(&block([0.0; 3], [1.0; 3]))), (Some(false), Some(true)));
+    assert_eq!(
+        (balanced(&leaning), balanced(&block([0.0; 3], [1.0; 3]))),
+        (Some(false), Some(true))
+    );
     let mut two = block([0.0; 3], [1.0; 3]);
     two.append(&block([3.0; 3], [4.0; 3]));
     assert_eq!(balanced(&two), None);

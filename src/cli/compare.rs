@@ -73,7 +73,8 @@ impl Compare {
             return Err(Failure::usage("which recipe? give its file"));
         };
         let start = Instant::now();
-        let text = read_text(file).map_err(|why| Failure::input(format!("{}: {why}", file.display())))?;
+        let text =
+            read_text(file).map_err(|why| Failure::input(format!("{}: {why}", file.display())))?;
         let (mut recipe, source) = run::parse(&text, file, &self.set)?;
         let recipe_sha256 = sha256(source.text().as_bytes());
         if self.fineness.resolution.is_some() || self.fineness.voxel.is_some() {
@@ -82,7 +83,8 @@ impl Compare {
         }
         let base = self.base(&recipe)?;
         let locate = |p| Failure::from(source.locate(p));
-        let parents = applies(&MorphEntry { method: None, ..base.clone() }, &recipe, "morph").map_err(locate)?;
+        let parents = applies(&MorphEntry { method: None, ..base.clone() }, &recipe, "morph")
+            .map_err(locate)?;
         let chosen = compare::choose(&self.methods, &recipe, &base).map_err(Failure::usage)?;
         let (fit, mut refused) = sorted(&chosen, &recipe);
         let how = self.how(&recipe, parents);
@@ -108,7 +110,8 @@ impl Compare {
         for (name, why) in unplanned {
             refused.push((name, plain(why)?));
         }
-        let mut says: Vec<[String; 2]> = chosen.iter().map(|c| [c.name.clone(), c.says.clone()]).collect();
+        let mut says: Vec<[String; 2]> =
+            chosen.iter().map(|c| [c.name.clone(), c.says.clone()]).collect();
         if self.methods.is_empty() {
             // surfaces of one kind are no surfaces of the other: those rows would tell nothing
             let of_surfaces = |n: &str| n.starts_with("pde-") || n.starts_with("nurbs-");
@@ -253,7 +256,8 @@ fn tell(r: &Row, watch: &Watch) {
     let what = match (&r.error, r.pieces) {
         (Some(why), _) => why.clone(),
         (None, pieces) => {
-            let number = |v: Option<f64>, n: usize| v.map_or("?".to_owned(), |v| format!("{v:.n$}"));
+            let number =
+                |v: Option<f64>, n: usize| v.map_or("?".to_owned(), |v| format!("{v:.n$}"));
             format!(
                 "{} pieces, genus {}, volume kept {}, wall {} mm, step {} mm, {} s",
                 pieces.unwrap_or(0),

@@ -135,7 +135,8 @@ impl Draft {
             notes.extend(found);
             shapes.push(shape);
         }
-        let parts = Parts { recipe: &recipe, beside: &beside, shapes: &shapes, meshes: &meshes, step };
+        let parts =
+            Parts { recipe: &recipe, beside: &beside, shapes: &shapes, meshes: &meshes, step };
         let (mut variants, mut refused) = (Vec::new(), Vec::new());
         for (at, entry) in recipe.variants() {
             match Variant::new(&entry, &at, &parts) {

@@ -57,7 +57,11 @@ pub fn claims(about: &Comparison) -> Vec<Claim> {
     all.extend(of("linear").map(|m| linear(m, parents)));
     all.extend(of("space-time").map(|m| space_time(m, parents, about)));
     if let (Some(linear), Some(m)) = (of("linear"), of("feature-volume")) {
-        all.push(better("Feature-based volume metamorphosis produces better results.", m, &[linear]));
+        all.push(better(
+            "Feature-based volume metamorphosis produces better results.",
+            m,
+            &[linear],
+        ));
     }
     let automatic: Vec<&Summary> = ["linear", "space-time"].into_iter().filter_map(of).collect();
     if let Some(m) = of("graft:paper").or(of("graft:fields-space-time"))

@@ -93,18 +93,25 @@ fn lead(about: &Comparison) -> String {
 fn table(about: &Comparison) -> String {
     let mut head = String::from("<th scope=\"col\">method</th>");
     for m in MEASURES {
-        let unit = if m.unit.is_empty() { String::new() } else { format!("<small>{}</small>", m.unit) };
-        let _ = write!(head, "<th scope=\"col\" title=\"{}\">{} {unit}</th>", escaped(m.says), m.title);
+        let unit =
+            if m.unit.is_empty() { String::new() } else { format!("<small>{}</small>", m.unit) };
+        let _ =
+            write!(head, "<th scope=\"col\" title=\"{}\">{} {unit}</th>", escaped(m.says), m.title);
     }
     let shown: Vec<Summary> = about.methods.iter().filter(|m| m.frames > 0).cloned().collect();
     let winners: Vec<Vec<bool>> = MEASURES.iter().map(|m| m.winners(&shown)).collect();
     let mut body = String::new();
     for (i, s) in shown.iter().enumerate() {
-        let _ = write!(body, "<tr data-method=\"{0}\"><th scope=\"row\"><i class=\"key\"></i>{0}</th>", escaped(&s.method));
+        let _ = write!(
+            body,
+            "<tr data-method=\"{0}\"><th scope=\"row\"><i class=\"key\"></i>{0}</th>",
+            escaped(&s.method)
+        );
         for (m, winners) in MEASURES.iter().zip(&winners) {
             let text = m.text(s).unwrap_or_else(|| "–".to_owned());
             if winners[i] {
-                let _ = write!(body, "<td class=\"best\">{text}<span class=\"vh\"> (best)</span></td>");
+                let _ =
+                    write!(body, "<td class=\"best\">{text}<span class=\"vh\"> (best)</span></td>");
             } else {
                 let _ = write!(body, "<td>{text}</td>");
             }
@@ -191,7 +198,8 @@ fn base64(bytes: &[u8]) -> String {
 
 fn claims(about: &Comparison) -> String {
     if about.claims.is_empty() {
-        return "<p>None of the methods of the paper's Figure 7 is in this comparison.</p>".to_owned();
+        return "<p>None of the methods of the paper's Figure 7 is in this comparison.</p>"
+            .to_owned();
     }
     let mut rows = String::new();
     for c in &about.claims {
@@ -237,7 +245,8 @@ const SHOWN: [(&str, usize); 17] = [
 ];
 
 fn frames(about: &Comparison) -> String {
-    let columns = SHOWN.iter().filter_map(|(n, d)| Some((COLUMNS.iter().find(|c| c.name == *n)?, *d)));
+    let columns =
+        SHOWN.iter().filter_map(|(n, d)| Some((COLUMNS.iter().find(|c| c.name == *n)?, *d)));
     let columns: Vec<_> = columns.collect();
     let mut text = String::from("<thead><tr>");
     for (c, _) in &columns {
@@ -278,7 +287,8 @@ fn definitions(about: &Comparison) -> String {
     }
     text += "</dl><h3>Columns of metrics.csv</h3><dl>";
     for c in COLUMNS {
-        let unit = if c.unit.is_empty() { String::new() } else { format!(" <small>{}</small>", c.unit) };
+        let unit =
+            if c.unit.is_empty() { String::new() } else { format!(" <small>{}</small>", c.unit) };
         let _ = write!(text, "<dt><code>{}</code>{unit}</dt><dd>{}</dd>", c.name, escaped(c.says));
     }
     text + "</dl>"
@@ -294,7 +304,10 @@ fn facts(about: &Comparison) -> String {
         ("its SHA-256", about.recipe_sha256.clone()),
         ("program", format!("fieldgraft {}", about.version)),
         ("command", about.arguments.join(" ")),
-        ("machine", format!("{} {}, {} cores, {} threads{processor}", m.os, m.arch, m.cores, m.threads)),
+        (
+            "machine",
+            format!("{} {}, {} cores, {} threads{processor}", m.os, m.arch, m.cores, m.threads),
+        ),
         (
             "time",
             format!(

@@ -1,9 +1,9 @@
 //! The methods that can be compared: a name and what it changes of a recipe's `[morph]`.
 
-use crate::scene::applies;
 use crate::recipe::{
     BlendEntry, InnerEntry, MethodEntry, MorphEntry, PlainOr, Recipe, WeightingKind, did_you_mean,
 };
+use crate::scene::applies;
 
 /// A method to compare.
 #[derive(Clone, Copy, Debug)]

@@ -220,12 +220,8 @@ fn frames(
             crumbs: how.crumbs,
             verify: how.verify,
         };
-        let mut row = Row {
-            method: variant.name.clone(),
-            t,
-            voxel_mm: scene.lattice.step,
-            ..Row::default()
-        };
+        let mut row =
+            Row { method: variant.name.clone(), t, voxel_mm: scene.lattice.step, ..Row::default() };
         let fresh = reset_peak();
         let (made, field) = made(variant, &work, job)?;
         row.peak_mb = peak_memory().filter(|_| fresh).map(|b| b as f64 / 1e6);

@@ -121,38 +121,114 @@ macro_rules! column {
 /// The columns of `metrics.csv`, in order.
 pub const COLUMNS: &[Column] = &[
     Column { name: "method", unit: "", says: "The method's name.", text: |r| quoted(&r.method) },
-    Column { name: "t", unit: "", says: "The time, 0 the first shape, 1 the second.", text: |r| r.t.to_string() },
-    column!(seconds, "s", "Wall time from the sampled parents to the mesh: fixing the time, sampling, extracting. The parents are made once for all methods and do not count; measures do not either."),
-    column!(peak_mb, "MB", "Largest resident set of the program while the frame was made, parents included. Empty where the system cannot reset it."),
-    Column { name: "voxel_mm", unit: "mm", says: "Side of a cell; one lattice for all methods.", text: |r| r.voxel_mm.to_string() },
+    Column {
+        name: "t",
+        unit: "",
+        says: "The time, 0 the first shape, 1 the second.",
+        text: |r| r.t.to_string(),
+    },
+    column!(
+        seconds,
+        "s",
+        "Wall time from the sampled parents to the mesh: fixing the time, sampling, extracting. The parents are made once for all methods and do not count; measures do not either."
+    ),
+    column!(
+        peak_mb,
+        "MB",
+        "Largest resident set of the program while the frame was made, parents included. Empty where the system cannot reset it."
+    ),
+    Column {
+        name: "voxel_mm",
+        unit: "mm",
+        says: "Side of a cell; one lattice for all methods.",
+        text: |r| r.voxel_mm.to_string(),
+    },
     column!(active_bricks, "", "Blocks of 8³ samples that were needed."),
     column!(triangles, "", "Triangles of the mesh; one mesher for all methods."),
     column!(closed, "", "Whether the directed edges cancel."),
     column!(manifold, "", "Whether every edge has two triangles and every vertex one fan."),
-    column!(self_intersections, "", "Triangles that cut or touch others. Only with --verify: about as long again as all other checks."),
+    column!(
+        self_intersections,
+        "",
+        "Triangles that cut or touch others. Only with --verify: about as long again as all other checks."
+    ),
     column!(components, "", "Sets of triangles joined through edges, cavities included; exact."),
-    column!(genus, "", "Handles over all components, from V - E + F = 2 (components - genus); exact."),
-    column!(volume_mm3, "mm³", "By the divergence theorem over the triangles; exact for the mesh, which is off from the field's surface by second order in the voxel."),
-    column!(volume_kept, "", "Volume over the mean of the parents' volumes, weighted by t as the features are."),
+    column!(
+        genus,
+        "",
+        "Handles over all components, from V - E + F = 2 (components - genus); exact."
+    ),
+    column!(
+        volume_mm3,
+        "mm³",
+        "By the divergence theorem over the triangles; exact for the mesh, which is off from the field's surface by second order in the voxel."
+    ),
+    column!(
+        volume_kept,
+        "",
+        "Volume over the mean of the parents' volumes, weighted by t as the features are."
+    ),
     column!(area_mm2, "mm²", "Sum of the triangles; a rough surface has more."),
-    column!(min_wall_mm, "mm", "Diameter of the smallest ball between the surface and the opposite side that the inward normal meets, sides that lean by 60° or more left out; the middle one of a triangle's corners counts. Exact for plates, rods and balls up to the mesh; rough below two voxels."),
-    column!(hausdorff_to_a_mm, "mm", "Hausdorff distance to the first parent, sampled and meshed on the same lattice: the larger of both ways, every vertex to the nearest triangle, and triangles halved where a larger distance may hide. Reached; the true one is at most hausdorff_error_mm more."),
+    column!(
+        min_wall_mm,
+        "mm",
+        "Diameter of the smallest ball between the surface and the opposite side that the inward normal meets, sides that lean by 60° or more left out; the middle one of a triangle's corners counts. Exact for plates, rods and balls up to the mesh; rough below two voxels."
+    ),
+    column!(
+        hausdorff_to_a_mm,
+        "mm",
+        "Hausdorff distance to the first parent, sampled and meshed on the same lattice: the larger of both ways, every vertex to the nearest triangle, and triangles halved where a larger distance may hide. Reached; the true one is at most hausdorff_error_mm more."
+    ),
     column!(hausdorff_to_b_mm, "mm", "The same to the second parent."),
-    column!(step_mm, "mm", "Hausdorff distance to the frame before in t; empty where either has no mesh."),
+    column!(
+        step_mm,
+        "mm",
+        "Hausdorff distance to the frame before in t; empty where either has no mesh."
+    ),
     column!(pieces, "", "Components of positive volume: solids; exact."),
     column!(smallest_piece_mm3, "mm³", "Volume of the smallest piece."),
     column!(smallest_piece_share, "", "Volume of the smallest piece over the whole."),
-    column!(mean_to_a_mm, "mm", "Mean distance to the first parent over the area, both ways averaged, by the values at the vertices; off by less than the longest edge, on smooth surfaces of second order."),
+    column!(
+        mean_to_a_mm,
+        "mm",
+        "Mean distance to the first parent over the area, both ways averaged, by the values at the vertices; off by less than the longest edge, on smooth surfaces of second order."
+    ),
     column!(mean_to_b_mm, "mm", "The same to the second parent."),
     column!(mean_step_mm, "mm", "The same to the frame before."),
-    column!(stray_mm, "mm", "Largest distance of a vertex to the nearer parent: what grows where neither parent has anything. Parts that move from one parent's place to the other's stray by up to half their way."),
+    column!(
+        stray_mm,
+        "mm",
+        "Largest distance of a vertex to the nearer parent: what grows where neither parent has anything. Parts that move from one parent's place to the other's stray by up to half their way."
+    ),
     column!(hausdorff_error_mm, "mm", "The largest bracket of the row's Hausdorff distances."),
-    column!(gradient_error, "", "Mean of | |grad f| - 1 | by central differences of a voxel at up to 2000 vertices: 0 for a signed distance. Offsets and sphere tracing trust the field as far as this is small."),
-    column!(border_clipped, "", "Whether the shape reached the border of the lattice and was closed there."),
-    column!(crumbs, "", "Loose pieces dropped before anything was measured (--crumbs or output.crumbs; the same for every method)."),
+    column!(
+        gradient_error,
+        "",
+        "Mean of | |grad f| - 1 | by central differences of a voxel at up to 2000 vertices: 0 for a signed distance. Offsets and sphere tracing trust the field as far as this is small."
+    ),
+    column!(
+        border_clipped,
+        "",
+        "Whether the shape reached the border of the lattice and was closed there."
+    ),
+    column!(
+        crumbs,
+        "",
+        "Loose pieces dropped before anything was measured (--crumbs or output.crumbs; the same for every method)."
+    ),
     column!(seconds_measures, "s", "Time of the check and the measures."),
-    Column { name: "file", unit: "", says: "The mesh, relative to the report.", text: |r| quoted(r.file.as_deref().unwrap_or_default()) },
-    Column { name: "error", unit: "", says: "Why there is no mesh.", text: |r| quoted(r.error.as_deref().unwrap_or_default()) },
+    Column {
+        name: "file",
+        unit: "",
+        says: "The mesh, relative to the report.",
+        text: |r| quoted(r.file.as_deref().unwrap_or_default()),
+    },
+    Column {
+        name: "error",
+        unit: "",
+        says: "Why there is no mesh.",
+        text: |r| quoted(r.error.as_deref().unwrap_or_default()),
+    },
 ];
 
 /// `metrics.csv`.
