@@ -2,11 +2,11 @@
 
 use super::live::{self, Placed, Stop, Want};
 use super::variant::{Parts, Variant, asked};
-use super::{Scene, SceneError, mesh_element, plan};
+use super::{Scene, SceneError, mesh_element, plan, scheme};
 use crate::grid::Lattice;
 use crate::job::{self, Job};
 use crate::num::Aabb;
-use crate::recipe::{GridEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join};
+use crate::recipe::{GridEntry, MorphEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -91,6 +91,19 @@ impl Draft {
     /// The recipe.
     pub fn recipe(&self) -> &Recipe {
         &self.recipe
+    }
+
+    /// Memory (bytes) that the methods need beside the shapes and the frames, all held at once.
+    pub fn method_bytes(&self) -> f64 {
+        let domain = hull(&self.placed);
+        let bytes = |(at, entry): &(String, MorphEntry)| -> Option<f64> {
+            let names = plan::shape_names(entry, &self.recipe, at).ok()?;
+            let method = plan::method(entry, &names, &self.recipe, at).ok()?;
+            let of: Vec<&str> = names.iter().map(String::as_str).collect();
+            let scheme = scheme::scheme(entry, method, &of, self.step, &self.recipe).ok()?;
+            Some(scheme.bytes(&domain, of.len()))
+        };
+        self.recipe.variants().iter().filter_map(bytes).sum()
     }
 
     fn padding(&self) -> f64 {
@@ -202,7 +215,8 @@ fn longest(placed: &[Placed]) -> f64 {
     hull(placed).size().max_element()
 }
 
-fn step(grid: &GridEntry, longest: f64) -> f64 {
+/// Side of a cell, mm, where the longest side of all is known.
+pub(super) fn step(grid: &GridEntry, longest: f64) -> f64 {
     let cells = grid.resolution.unwrap_or(GridEntry::RESOLUTION);
     grid.voxel.unwrap_or(longest / f64::from(cells))
 }

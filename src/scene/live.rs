@@ -158,12 +158,7 @@ fn solid_file(path: &Path, at: &str) -> Result<Read, Problem> {
     Ok(Read { inputs: vec![input], ..Read::new(body, story) })
 }
 
-fn surface_file(
-    entry: &ShapeEntry,
-    path: &Path,
-    solid: bool,
-    at: &str,
-) -> Result<Read, Problem> {
+fn surface_file(entry: &ShapeEntry, path: &Path, solid: bool, at: &str) -> Result<Read, Problem> {
     let key = format!("{at}.surface");
     let fail = |why: String| Problem::new(&key, why);
     let file = surface::open(path).map_err(|e| fail(e.to_string()))?;
@@ -220,7 +215,8 @@ pub(super) fn exact(
                 SkinnedError::Cancelled(c) => Stop::Cancelled(c),
                 e => Problem::new(join("shapes", &placed.name), e.to_string()).into(),
             })?;
-            Ok((field, vec![format!("{}: {}", placed.name, sides.story())]))
+            let told = [Some(sides.story()), skinned.too_thin(step)].into_iter().flatten();
+            Ok((field, told.map(|n| format!("{}: {n}", placed.name)).collect()))
         }
         Body::Solid(parts) => {
             let at = join("shapes", &placed.name);
@@ -258,12 +254,13 @@ pub(super) fn make(
     let moves = surface.as_ref().filter(|s| s.moves());
     if let Some(moves) = moves {
         let moving = Arc::new(Moving::new(&name, moves.clone(), step));
+        let notes = moves.too_thin(step).map(|n| format!("{name}: {n}")).into_iter().collect();
         let (field, volume) = first(&moving, &purpose.times, purpose.morphs, job)?;
         let seconds = [start.elapsed().as_secs_f64(), 0.0];
         let moving = Some(moving);
         let shape =
             LiveShape { name, field, volume, bounds, seconds, exact: None, surface, moving };
-        return Ok((shape, vec![]));
+        return Ok((shape, notes));
     }
     let (exact, notes) = exact(placed, entry, 0.5, step, job)?;
     let made = start.elapsed().as_secs_f64();

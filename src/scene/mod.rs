@@ -14,8 +14,10 @@ mod pair;
 mod place;
 mod plan;
 mod rows;
+mod scheme;
 mod single;
 mod skinned;
+pub mod suggest;
 pub mod surface;
 mod variant;
 

@@ -27,6 +27,9 @@ const PLANAR: f64 = 1e-6;
 /// Chord tolerance of what is made, as a part of a cell.
 const FINE: f64 = 0.1;
 
+/// A shell thinner than this many cells has holes.
+const THINNEST: f64 = 2.0;
+
 /// Why a shape of a surface file has no field.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SkinnedError {
@@ -170,6 +173,11 @@ impl Skinned {
         }
     }
 
+    /// What it is.
+    pub fn object(&self) -> &Parametric {
+        &self.object
+    }
+
     /// Where it stands: the similarity from the file's space to ours.
     pub fn stands(&self) -> Similarity {
         self.by[0]
@@ -260,13 +268,20 @@ impl Skinned {
         Ok(mesh)
     }
 
+    /// What is to be said about cells of `step` mm.
+    pub fn too_thin(&self, step: f64) -> Option<String> {
+        let mm = self.how.skin.thickness?;
+        let shell = self.outlines.iter().any(|(_, o)| o.room != Room::None);
+        (shell && mm < THINNEST * step).then(|| {
+            format!(
+                "the thickness of {mm} mm is less than {THINNEST} cells of {step:.3} mm: expect \
+                 holes; use smaller cells, or more thickness"
+            )
+        })
+    }
+
     /// The solid at `t` for cells of `step` mm, and what the surface is.
-    pub fn field(
-        &self,
-        t: f64,
-        step: f64,
-        job: &dyn Job,
-    ) -> Result<(Shared, Sides), SkinnedError> {
+    pub fn field(&self, t: f64, step: f64, job: &dyn Job) -> Result<(Shared, Sides), SkinnedError> {
         let mesh = self.mesh(t, self.how.tolerance(step))?;
         crate::job::check(job)?;
         let curve = matches!(self.object, Parametric::Curve(_) | Parametric::CurveMotion(_));
@@ -348,8 +363,7 @@ fn long(curve: &dyn Curve) -> Result<f64, SurfaceError> {
     let pieces = curve.breaks().windows(2).enumerate();
     let looks = pieces.flat_map(|(piece, ends)| {
         let (a, b) = (ends[0], ends[1]);
-        (0..=LOOKS)
-            .map(move |i| curve.jet(piece, a + (b - a) * f64::from(i) / f64::from(LOOKS)).c)
+        (0..=LOOKS).map(move |i| curve.jet(piece, a + (b - a) * f64::from(i) / f64::from(LOOKS)).c)
     });
     diagonal(&Aabb::of(looks))
 }
@@ -362,20 +376,17 @@ fn diagonal(b: &Aabb) -> Result<f64, SurfaceError> {
     Err(SurfaceError::new("surface", format!("has no size: its box has a diagonal of {d}")))
 }
 
-/// Whether the curve is closed and stays in a plane.
+/// Whether the curve is closed and stays in a plane; a curve that has shrunk to a line does.
 fn planar(curve: &dyn Curve) -> bool {
-    if !curve.closed() {
-        return false;
-    }
-    let Ok(Ok(ring)) = long(curve).map(|d| polyline(curve, ROUGH * d)) else {
-        return false;
+    let ring = match long(curve).map(|d| polyline(curve, ROUGH * d)) {
+        Ok(Ok(ring)) if curve.closed() => ring,
+        _ => return false,
     };
     let o = ring[0];
     let normal: DVec3 = ring.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum();
     let size = Aabb::of(ring.iter().copied()).size().length();
-    normal
-        .try_normalize()
-        .is_some_and(|n| ring.iter().all(|p| (p - o).dot(n).abs() <= PLANAR * size))
+    let normal = normal.try_normalize().filter(|_| normal.length() > PLANAR * size * size);
+    normal.is_none_or(|n| ring.iter().all(|p| (p - o).dot(n).abs() <= PLANAR * size))
 }
 
 impl Similarity {
@@ -384,3 +395,6 @@ impl Similarity {
         DAffine3::from_scale_rotation_translation(DVec3::splat(self.scale), self.turn, self.shift)
     }
 }
+
+#[cfg(test)]
+mod tests;

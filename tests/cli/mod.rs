@@ -1,3 +1,5 @@
+/// Files that play the frames of a morph.
+mod animation;
 /// `check` and its JSON.
 mod check;
 /// `compare`: methods, measures, the report.
@@ -6,9 +8,15 @@ mod compare;
 mod convert;
 /// What is wrong, and what is said about it.
 mod errors;
+/// `features suggest`: parts found, recipes written.
+mod features;
 /// `morph` and `run`: files, reports, limits.
 mod make;
 /// The recipes and solids that ship with the crate.
 mod shipped;
+/// `surface`: files of every kind, their samples and meshes, and what is wrong with them.
+mod surface;
+/// Surface files as recipes, and as shapes among others.
+mod surfaces;
 /// `schema`, `completions`, `man`.
 mod texts;
