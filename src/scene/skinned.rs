@@ -173,6 +173,11 @@ impl Skinned {
         }
     }
 
+    /// What it is.
+    pub fn object(&self) -> &Parametric {
+        &self.object
+    }
+
     /// Where it stands: the similarity from the file's space to ours.
     pub fn stands(&self) -> Similarity {
         self.by[0]
