@@ -7,6 +7,7 @@ mod check;
 mod compare;
 mod convert;
 mod failure;
+mod features;
 mod inputs;
 mod morph;
 mod npy;
@@ -62,6 +63,9 @@ enum Command {
     Check(check::Check),
     /// Turn any mesh, solid or surface into a clean watertight mesh
     Convert(Box<convert::Convert>),
+    /// Find the parts of chairs, and suggest feature elements for them
+    #[command(subcommand)]
+    Features(features::Features),
     /// Draw meshes: one picture, or a sheet of many
     Picture(picture::Picture),
     /// Sample a parametric surface or curve, as points (CSV) or as a mesh
@@ -111,6 +115,7 @@ pub fn main() -> ExitCode {
         Command::Compare(c) => c.run(&watch),
         Command::Check(c) => c.run(&watch),
         Command::Convert(c) => c.run(&watch),
+        Command::Features(c) => c.run(&watch),
         Command::Picture(c) => c.run(&watch),
         Command::Surface(c) => c.run(&watch),
         Command::Schema(c) => c.run(),

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::inputs::{self, Fineness, Reading};
 use super::steps::{self, Task};
 use super::watch::Watch;
-use super::{Making, convert};
+use super::{Making, convert, features};
 use clap::{Args, ValueEnum};
 use fieldgraft::mesh::check_output;
 use fieldgraft::recipe::{
@@ -12,6 +12,7 @@ use fieldgraft::recipe::{
     ShapeEntry, Source, Times, VERSION, word,
 };
 use fieldgraft::run;
+use fieldgraft::scene::suggest;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -33,7 +34,8 @@ pub struct Morph {
     /// How: linear, level-set, transport, or space-time (the default)
     #[arg(long, value_name = "METHOD", value_parser = method)]
     method: Option<MethodEntry>,
-    /// How the meshes are laid over each other: box (all stand where the first does) or none
+    /// How the meshes are laid over each other: box (all stand where the first does), pose (each as
+    /// chairs do) or none
     #[arg(long, value_enum, default_value_t = Align::Box)]
     align: Align,
     #[command(flatten)]
@@ -61,6 +63,8 @@ pub struct Morph {
 enum Align {
     /// Their boxes' centres and floors agree with the first one's
     Box,
+    /// Each stands on the floor and faces the front, as far as that can be found
+    Pose,
     /// They stay where they are
     None,
 }
@@ -84,7 +88,7 @@ fn method(text: &str) -> Result<MethodEntry, String> {
 impl Morph {
     /// Makes the hybrids.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
-        let recipe = self.recipe()?;
+        let recipe = self.recipe(watch)?;
         let text = toml::to_string(&recipe)
             .map_err(|e| Failure::new(Failure::FAILED, format!("recipe: {e}")))?;
         if let Some(path) = self.recipe.as_ref().filter(|_| !self.making.dry_run) {
@@ -104,7 +108,7 @@ impl Morph {
     }
 
     /// The recipe this command line stands for.
-    fn recipe(&self) -> Result<Recipe, Failure> {
+    fn recipe(&self, watch: &Watch) -> Result<Recipe, Failure> {
         let times: Vec<f64> = self.t.iter().flat_map(|t| t.0.iter().copied()).collect();
         let template = |name: &str| name.contains("{t}");
         let several = times.len() > 1;
@@ -118,6 +122,13 @@ impl Morph {
         let names = names(self.inputs.len());
         let mut shapes: BTreeMap<String, ShapeEntry> =
             names.iter().cloned().zip(self.reading.shapes(&self.inputs)?).collect();
+        if self.align == Align::Pose {
+            let looked = suggest::look(shapes.into_iter().collect(), Path::new(""), watch)?;
+            for guess in &looked.suggestion.shapes {
+                watch.say(&format!("{}: {}", guess.name, features::words(guess)));
+            }
+            shapes = looked.shapes.into_iter().collect();
+        }
         if self.align == Align::Box {
             for name in &names[1..] {
                 if let Some(shape) = shapes.get_mut(name) {

@@ -140,6 +140,8 @@ pub fn skin(
                 sheets.faces.append(&mut whole.faces);
             }
             Err(MeshFieldError::NoInside { .. }) => return Err(SkinError::Sheet(sides)),
+            // fins that are still points
+            Err(MeshFieldError::Empty { .. }) if !sheets.faces.is_empty() => {}
             Err(e) => return Err(e.into()),
         }
     }
@@ -147,7 +149,11 @@ pub fn skin(
         let mm = options.thickness.ok_or(SkinError::Sheet(sides))?;
         let thicken = Some(Thicken { mm, which: Which::All });
         let options = MeshOptions { thicken, sign: Sign::Unsigned, floor: None };
-        fields.push(Arc::new(MeshField::new(&sheets, &options, job)?.0));
+        match MeshField::new(&sheets, &options, job) {
+            Ok((field, _)) => fields.push(Arc::new(field)),
+            Err(MeshFieldError::Empty { .. }) if !fields.is_empty() => {}
+            Err(e) => return Err(e.into()),
+        }
     }
     let join = |a, b| -> Shared { Arc::new(Joined { a, b, join: Join::Add }) };
     match fields.into_iter().reduce(join) {

@@ -17,6 +17,7 @@ mod rows;
 mod scheme;
 mod single;
 mod skinned;
+pub mod suggest;
 pub mod surface;
 mod variant;
 

@@ -2,10 +2,14 @@
 mod animation;
 /// `check` and its JSON.
 mod check;
+/// `compare`: methods, measures, the report.
+mod compare;
 /// `convert`: meshes and solids in, meshes and fields out.
 mod convert;
 /// What is wrong, and what is said about it.
 mod errors;
+/// `features suggest`: parts found, recipes written.
+mod features;
 /// `morph` and `run`: files, reports, limits.
 mod make;
 /// The recipes and solids that ship with the crate.
