@@ -72,7 +72,7 @@ fn a_level_set_keeps_what_both_have_and_adds_nothing_else() {
     let t = balls("t", &[([8.0, 3.0, 0.0], 9.0)]);
     let (a, b) = (s.field.clone(), t.field.clone());
     let m = morph(vec![s, t], Scheme::LevelSet { step: 0.7 }).unwrap();
-    let mut before = vec![true; 0];
+    let mut before: Vec<bool> = Vec::new();
     for time in [0.1, 0.3, 0.5, 0.7, 0.95] {
         let f = m.at(time, &Quiet).unwrap();
         let mut now = Vec::new();

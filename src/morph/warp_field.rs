@@ -25,8 +25,9 @@ const ON_ELEMENT: [DVec3; 7] =
     [DVec3::ZERO, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
 /// Anchors closer than this share of their extent are one: the first of them counts.
 const SAME: f64 = 1e-4;
-/// Anchors at most: the system is solved densely, and every look-up passes all of them.
-const MOST: usize = 1000;
+/// Anchors at most: the system is solved densely, which takes a tenth of a second for so many, and
+/// every look-up passes all of them.
+const MOST: usize = 300;
 
 pub(super) struct Warp {
     shapes: Vec<Part>,
@@ -58,7 +59,7 @@ impl Warp {
         if anchors.is_empty() || anchors.len() > MOST {
             return Err(MorphError::Range {
                 what: "the number of anchors".to_owned(),
-                expected: "1 to 1000; give [[features]] or [[anchors]]",
+                expected: "1 to 300; give [[features]] or [[anchors]]",
                 got: anchors.len() as f64,
             });
         }

@@ -2,6 +2,8 @@
 mod animation;
 /// `check` and its JSON.
 mod check;
+/// `compare`: methods, measures, the report.
+mod compare;
 /// `convert`: meshes and solids in, meshes and fields out.
 mod convert;
 /// What is wrong, and what is said about it.

@@ -4,6 +4,20 @@
 use crate::job::{Cancelled, Job, check};
 use rayon::prelude::*;
 
+/// Least factor of a kernel: it reaches 15 √γ far along an axis.
+const LEAST: f64 = 1e-100;
+/// What is less counts as nothing. Times a factor it is still a normal number, and those that are
+/// not cost a hundred times more.
+const NOTHING: f64 = 1e-200;
+
+/// Samples that one thread takes at least: handing out less costs more than it gains.
+pub(super) const SHARE: usize = 1 << 15;
+
+/// `x`, or 0 where it is next to nothing.
+pub(super) fn flushed(x: f64) -> f64 {
+    if x < NOTHING { 0.0 } else { x }
+}
+
 /// A Gaussian over a lattice, exp(-r² / γ), r in samples.
 pub(super) struct Gauss {
     size: [usize; 3],
@@ -20,7 +34,8 @@ impl Gauss {
     pub fn set(&mut self, gamma: f64) {
         self.kernels = self.size.map(|n| {
             let at = |i: usize| i as f64 - (n as f64 - 1.0);
-            (0..2 * n - 1).map(|i| (-at(i) * at(i) / gamma).exp()).collect()
+            let factor = |i: usize| (-at(i) * at(i) / gamma).exp();
+            (0..2 * n - 1).map(|i| if factor(i) < LEAST { 0.0 } else { factor(i) }).collect()
         });
     }
 
@@ -51,7 +66,8 @@ impl Gauss {
         order: [usize; 2],
     ) {
         let [x, y, _] = self.size;
-        data.par_chunks_exact_mut(x * y).enumerate().for_each(|(k, plane)| {
+        let share = SHARE / (x * y) + 1;
+        data.par_chunks_exact_mut(x * y).with_min_len(share).enumerate().for_each(|(k, plane)| {
             let rows = rows(k);
             if !rows.contains(&true) {
                 return;
@@ -76,7 +92,7 @@ impl Gauss {
             for (i, &v) in row.iter().enumerate().filter(|(_, v)| **v != 0.0) {
                 add(&mut out, v, &self.kernels[0][x - 1 - i..2 * x - 1 - i]);
             }
-            row.copy_from_slice(&out);
+            row.iter_mut().zip(&out).for_each(|(to, &v)| *to = flushed(v));
         }
     }
 
@@ -90,19 +106,21 @@ impl Gauss {
                 add(to, self.kernels[1][y - 1 + j - i], from);
             }
         }
-        plane.copy_from_slice(&out);
+        plane.iter_mut().zip(&out).for_each(|(to, &v)| *to = flushed(v));
     }
 
     /// Along z.
     fn across(&self, data: &[f64]) -> Vec<f64> {
         let [x, y, z] = self.size;
         let full: Vec<bool> =
-            data.par_chunks_exact(x * y).map(|p| p.iter().any(|&v| v != 0.0)).collect();
+            data.chunks_exact(x * y).map(|p| p.iter().any(|&v| v != 0.0)).collect();
         let mut out = vec![0.0; data.len()];
-        out.par_chunks_exact_mut(x * y).enumerate().for_each(|(k, to)| {
+        let share = SHARE / (x * y) + 1;
+        out.par_chunks_exact_mut(x * y).with_min_len(share).enumerate().for_each(|(k, to)| {
             for (i, from) in data.chunks_exact(x * y).enumerate().filter(|(i, _)| full[*i]) {
                 add(to, self.kernels[2][z - 1 + k - i], from);
             }
+            to.iter_mut().for_each(|v| *v = flushed(*v));
         });
         out
     }
@@ -110,6 +128,9 @@ impl Gauss {
 
 /// to += factor * from
 fn add(to: &mut [f64], factor: f64, from: &[f64]) {
+    if factor == 0.0 {
+        return;
+    }
     for (t, f) in to.iter_mut().zip(from) {
         *t += factor * f;
     }

@@ -26,7 +26,7 @@ use crate::field::dense::Dense;
 use crate::grid::{Lattice, redistance};
 use crate::job::{Cancelled, Job};
 use crate::num::Aabb;
-use gauss::Gauss;
+use gauss::{Gauss, SHARE, flushed};
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
@@ -185,7 +185,9 @@ impl<'a> Barycentre<'a> {
                 // a scaling is exp(potential / γ), and potentials carry over
                 let power = last / gamma;
                 let fields = self.b.iter_mut().chain([&mut self.d]);
-                fields.for_each(|x| x.par_iter_mut().for_each(|x| *x = scaled(*x, power)));
+                fields.for_each(|x| {
+                    x.par_iter_mut().with_min_len(SHARE).for_each(|x| *x = scaled(*x, power))
+                });
             }
             last = gamma;
             for round in 0..rounds {
@@ -205,23 +207,27 @@ impl<'a> Barycentre<'a> {
         for ((mass, _), b) in self.masses.iter().zip(&self.b) {
             let mut a = self.gauss.onto(b, &mass.rows, job)?;
             let ratio = |(a, &m): (&mut f64, &f64)| *a = divided(m, *a);
-            a.par_iter_mut().zip(&mass.density).for_each(ratio);
+            a.par_iter_mut().with_min_len(SHARE).zip(&mass.density).for_each(ratio);
             spread.push(self.gauss.from(a, job)?);
         }
         let weights: Vec<f64> = self.masses.iter().map(|m| m.1).collect();
         let mean = |n: usize| {
             let logs: f64 = spread.iter().zip(&weights).map(|(s, w)| w * s[n].ln()).sum();
             let m = self.d[n] * logs.exp();
-            if m.is_finite() { m } else { 0.0 }
+            if m.is_finite() { flushed(m) } else { 0.0 }
         };
-        let m: Vec<f64> = (0..self.d.len()).into_par_iter().map(mean).collect();
+        let m: Vec<f64> = (0..self.d.len()).into_par_iter().with_min_len(SHARE).map(mean).collect();
         for (b, s) in self.b.iter_mut().zip(&spread) {
-            b.par_iter_mut().zip(s).zip(&m).for_each(|((b, s), m)| *b = divided(*m, *s));
+            b.par_iter_mut()
+                .with_min_len(SHARE)
+                .zip(s)
+                .zip(&m)
+                .for_each(|((b, s), m)| *b = divided(*m, *s));
         }
         drop(spread);
         let back = self.gauss.from(self.d.clone(), job)?;
         let factor = |((d, h), m): ((&mut f64, &f64), &f64)| *d = divided(*d * m, *h).sqrt();
-        self.d.par_iter_mut().zip(&back).zip(&m).for_each(factor);
+        self.d.par_iter_mut().with_min_len(SHARE).zip(&back).zip(&m).for_each(factor);
         // summed in one order, so that every number of threads stops at the same round
         let moved: f64 = m.iter().zip(&self.m).map(|(a, b)| (a - b).abs()).sum();
         let total: f64 = m.iter().sum();
@@ -233,9 +239,9 @@ impl<'a> Barycentre<'a> {
 /// 0 where there is nothing to divide by: what is so far off takes no part.
 fn divided(a: f64, b: f64) -> f64 {
     let q = a / b;
-    if b > 0.0 && q.is_finite() { q } else { 0.0 }
+    if b > 0.0 && q.is_finite() { flushed(q) } else { 0.0 }
 }
 
 fn scaled(x: f64, power: f64) -> f64 {
-    if x > 0.0 { x.powf(power).clamp(1e-300, 1e300) } else { 0.0 }
+    flushed(x.powf(power)).min(1e200)
 }

@@ -80,6 +80,21 @@ pub const METHODS: &[Method] = &[
         change: |m| maps(m, InnerEntry::Erode),
     },
     Method {
+        name: "level-set",
+        says: "the source's surface moves into the target's (Breen and Whitaker 2001)",
+        change: |m| plain(m, MethodEntry::LevelSet),
+    },
+    Method {
+        name: "transport",
+        says: "matter is moved over the shortest way (Solomon et al. 2015)",
+        change: |m| plain(m, MethodEntry::Transport),
+    },
+    Method {
+        name: "warp",
+        says: "shapes are pulled onto common anchors and averaged (Cohen-Or et al. 1998)",
+        change: |m| plain(m, MethodEntry::Warp),
+    },
+    Method {
         name: "pde-boundary",
         says: "paper 000, method A: the curves are blended and the equation solved again",
         change: |m| plain(m, MethodEntry::PdeBoundary),
@@ -193,7 +208,8 @@ mod tests {
         };
         let names = |c: &[Chosen]| c.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
         let plain = choose(&[], &Recipe::default(), &base).unwrap();
-        assert_eq!(names(&plain), ["linear", "space-time"]);
+        assert_eq!(names(&plain)[..2], ["linear", "space-time"]);
+        assert!(!names(&plain).iter().any(|n| n.starts_with("graft")), "no features");
         let wanted = ["graft", "recipe", "graft"].map(str::to_owned);
         let two = choose(&wanted, &Recipe::default(), &base).unwrap();
         assert_eq!(names(&two), ["graft", "recipe"]);
