@@ -55,6 +55,12 @@ pub struct Suggest {
 impl Suggest {
     /// Finds, tells and writes.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
+        for path in [&self.output, &self.picture].into_iter().flatten() {
+            if !self.force && path.symlink_metadata().is_ok() {
+                let why = "exists already; overwrite it with --force";
+                return Err(Failure::usage(format!("{}: {why}", path.display())));
+            }
+        }
         let shapes = names(&self.inputs).into_iter().zip(self.reading.shapes(&self.inputs)?);
         let looked = suggest::look(shapes.collect(), Path::new(""), watch)?;
         looked.notes.iter().for_each(|n| watch.say(n));
