@@ -46,11 +46,11 @@ pub struct Apart {
     pub mean: f64,
 }
 
-/// The bracket of the largest distance is closed to this share of it, or as far as
-/// [`HALVINGS`] go.
-const BRACKET: f64 = 1e-3;
+/// The bracket of the largest distance is closed to this share of it and 1e-5 of the other
+/// surface's diagonal, or as far as [`HALVINGS`] go.
+const BRACKET: f64 = 5e-3;
 /// Halvings in one direction: a fraction of the work of the vertices.
-const HALVINGS: usize = 4096;
+const HALVINGS: usize = 1024;
 
 /// The distances of all points of a mesh to another, mm.
 pub type PointDistances = Vec<f64>;
@@ -145,10 +145,9 @@ impl Shell {
         (max, over.max(within(max) - max))
     }
 
-    /// What distances to this mesh may be off by, mm.
+    /// What the bracket may leave open even where the distance is zero, mm.
     fn slack(&self) -> f64 {
-        let b = self.bvh.bounds();
-        1e-12 * b.min.abs().max(b.max.abs()).max_element()
+        1e-5 * self.bvh.bounds().size().length()
     }
 }
 

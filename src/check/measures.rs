@@ -59,7 +59,7 @@ fn the_farthest_point_may_lie_within_a_face_or_at_a_corner() {
     assert!(inspect(&dented, &Options::default()).printable);
     let (way, _) = Shell::new(plain).to(&Shell::new(dented), &Quiet).unwrap();
     assert!(way.max <= 2.4 + 1e-12 && way.max + way.over >= 2.4, "{way:?}");
-    assert!(way.over < 0.01, "{way:?}");
+    assert!(way.over < 0.02, "{way:?}");
 }
 
 #[test]

@@ -27,7 +27,7 @@ const MOST: usize = 2_000_000;
 /// an opposite side. Meaningful for closed meshes. A ray a point: about as long as the check.
 ///
 /// Exact up to rounding for plane-parallel plates, and up to the mesh's own sagitta for rods, tubes
-/// and balls; where normals are off by 10°, as on rough spots, a rod comes out 5% too thin. Flat
+/// and balls; where both normals are off by 10°, as on rough spots, a rod comes out 5% too thin. Flat
 /// faces are measured every 160th of the box's diagonal: a spot that is thin over less than that
 /// may be missed on large triangles. On a mesh sampled with a step `h`, walls below `2 h` are
 /// as rough as the samples.
@@ -123,7 +123,9 @@ impl Points {
     /// Thickness at a point.
     fn wall(&self, shell: &Shell, p: &Point, least: f64) -> Option<f64> {
         let exit = shell.bvh().first_exit(p.at, -p.normal, least)?;
-        let cos = -self.normals[exit.face as usize].dot(p.normal);
+        // a smooth normal leans near an edge, a small triangle's own on a rough spot
+        let cos = [self.normals[exit.face as usize], exit.normal].map(|n| -n.dot(p.normal));
+        let cos = cos[0].max(cos[1]);
         // tan² of half the angle
         let lean = ((1.0 - cos) / (1.0 + cos)).max(0.0);
         (cos > OPPOSITE).then_some(exit.distance * (1.0 - lean))
