@@ -2,8 +2,8 @@
 //! recipe E; METHODS B).
 
 use super::hybrid::{Hybrid, Looked};
-use super::inner::Local;
-use super::plan::{Form, SpaceTime};
+use super::inner::{Local, grow};
+use super::plan::{Form, Inner, SpaceTime};
 use super::space_time::{Bounded, height_for_volume};
 use crate::job::{self, Cancelled, Job};
 use crate::num::Aabb;
@@ -20,12 +20,81 @@ const LEAST_REACH: f64 = 20.0;
 const REACH_MARGIN: f64 = 1.1;
 /// Largest level of the linear form, mm: more fattens thin members instead of mending them.
 const LEVEL_CAP: f64 = 12.0;
+/// Largest share of its half thickness by which a shape is thinned: more breaks its thinner members.
+const THINNEST: f64 = 0.4;
+/// Halvings of the share: to a four-thousandth of it.
+const HALVINGS: u32 = 12;
 /// Largest height of the space-time blend in units of the reach: near t = 0 and 1 the blend is weak,
 /// and the height that would keep the volume grows without bound.
 const HEIGHT_CAP: f64 = 4.0;
 /// Least height of the half-cylinders' blend in units of the reach: half way their base is zero all
 /// over the first shape, and only the blend says that this is inside.
 const CYLINDERS_FLOOR: f64 = 0.02;
+
+/// What is measured for one feature.
+pub(super) struct Measured {
+    pub local: Local,
+    /// How much each shape is thinned, mm.
+    pub thin: Vec<f64>,
+}
+
+/// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes.
+fn measured(g: &[f64], lam: &[f64], inner: Inner) -> Measured {
+    let mut local = local(g, lam);
+    let mut thin = vec![0.0; lam.len()];
+    match inner {
+        Inner::Linear => (local.apart, local.level) = (0.0, 0.0),
+        Inner::Mean => local.apart = 0.0,
+        Inner::Grow | Inner::Erode | Inner::SpaceTime => local.apart = 1.0,
+        Inner::Merge => {
+            local.apart = 1.0;
+            thin = thinning(g, lam, local.reach);
+        }
+        Inner::Auto => {}
+    }
+    Measured { local, thin }
+}
+
+/// How much each shape is thinned so that the merged shapes keep the mean volume: the same share of
+/// the half thickness of each, at most [`THINNEST`].
+fn thinning(g: &[f64], lam: &[f64], reach: f64) -> Vec<f64> {
+    let k = lam.len();
+    let (mut count, mut depth) = (vec![0u64; k], vec![0.0; k]);
+    for row in g.chunks_exact(k) {
+        for (j, &v) in row.iter().enumerate() {
+            if v < 0.0 {
+                count[j] += 1;
+                depth[j] -= v;
+            }
+        }
+    }
+    // depths in a plate run evenly from none to its half thickness
+    let half = |j: usize| if count[j] > 0 { 2.0 * depth[j] / count[j] as f64 } else { 0.0 };
+    let half: Vec<f64> = (0..k).map(|j| if lam[j] > 0.0 { half(j) } else { 0.0 }).collect();
+    let wanted: f64 = count.iter().zip(lam).map(|(&c, l)| c as f64 * l).sum();
+    let mut row = vec![0.0; k];
+    let mut inside = |share: f64| {
+        let mut n = 0u64;
+        for g in g.chunks_exact(k) {
+            for (r, (g, h)) in row.iter_mut().zip(g.iter().zip(&half)) {
+                *r = g + share * h;
+            }
+            n += u64::from(grow(&row, lam, reach) < 0.0);
+        }
+        n as f64
+    };
+    let (mut lo, mut hi) = (0.0, THINNEST);
+    if inside(0.0) <= wanted {
+        hi = 0.0;
+    } else if inside(hi) > wanted {
+        lo = hi;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (lo + hi);
+        if inside(middle) > wanted { lo = middle } else { hi = middle }
+    }
+    half.iter().map(|h| hi * h).collect()
+}
 
 /// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes.
 fn local(g: &[f64], lam: &[f64]) -> Local {
@@ -75,16 +144,23 @@ fn level(means: &mut [f64], wanted: f64) -> f64 {
 }
 
 /// Measures the features of a hybrid, or the whole shapes over `domain` where it has none.
-pub(super) fn locals(h: &Hybrid, domain: &Aabb, job: &dyn Job) -> Result<Vec<Local>, Cancelled> {
+pub(super) fn locals(
+    h: &Hybrid,
+    inners: &[Inner],
+    domain: &Aabb,
+    job: &dyn Job,
+) -> Result<Vec<Measured>, Cancelled> {
     if h.features.is_empty() {
         let looked = look(h, &lattice(domain), job)?;
-        return Ok(vec![local(&looked.g, &h.lam)]);
+        let inner = inners.first().copied().unwrap_or(Inner::Auto);
+        return Ok(vec![measured(&looked.g, &h.lam, inner)]);
     }
     h.features
         .iter()
-        .map(|f| {
+        .zip(inners)
+        .map(|(f, &inner)| {
             let at: Vec<DVec3> = cube(FEATURE_SIDE).map(|q| f.element.to_world(q)).collect();
-            Ok(local(&look(h, &at, job)?.g, &f.lam))
+            Ok(measured(&look(h, &at, job)?.g, &f.lam, inner))
         })
         .collect()
 }

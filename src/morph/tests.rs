@@ -74,6 +74,7 @@ fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
         morph: course([1.0, 2.0, 0.5]),
         deform: course([1.0, 1.0, 1.0]),
         offset: 2.0,
+        inner: None,
     };
     Plan {
         shapes,
@@ -91,8 +92,15 @@ fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
     }
 }
 
-const INNERS: [Inner; 5] =
-    [Inner::Linear, Inner::SpaceTime, Inner::Grow, Inner::Erode, Inner::Auto];
+const INNERS: [Inner; 7] = [
+    Inner::Linear,
+    Inner::SpaceTime,
+    Inner::Grow,
+    Inner::Erode,
+    Inner::Auto,
+    Inner::Mean,
+    Inner::Merge,
+];
 
 /// Every method on two and on three shapes, with and without features.
 fn morphs() -> Vec<(String, Plan)> {

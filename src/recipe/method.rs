@@ -3,6 +3,7 @@
 use super::primitive::{finite, is_default, positive};
 use super::source::join;
 use super::time::Times;
+use super::features::FeatureMorph;
 use super::value::{Auto, PlainOr};
 use super::{Problem, Recipe, did_you_mean};
 use schemars::JsonSchema;
@@ -52,6 +53,9 @@ pub struct MorphEntry {
     /// Weights of the frames, as `weights`; by default the mean of the features' weights.
     #[serde(default, skip_serializing_if = "is_default")]
     pub deform_weights: Weights,
+    /// How single features change, by their names: over what the features say themselves.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub parts: BTreeMap<String, FeatureMorph>,
     /// Parameters of space-time blending.
     #[serde(rename = "space-time", default, skip_serializing_if = "Option::is_none")]
     pub space_time: Option<SpaceTimeEntry>,
@@ -100,6 +104,10 @@ pub enum InnerEntry {
     Erode,
     /// Linear where the shapes overlap, grow where not.
     Auto,
+    /// The weighted mean of the fields, raised so that the mean volume is kept.
+    Mean,
+    /// As grow, with the members thinned so that the mean volume is kept.
+    Merge,
 }
 
 /// How distances to features become weights.
@@ -197,6 +205,7 @@ impl MorphEntry {
             t: self.t.clone().or_else(|| base.t.clone()),
             weights: rows(&self.weights, &base.weights),
             deform_weights: rows(&self.deform_weights, &base.deform_weights),
+            parts: over_parts(&self.parts, &base.parts),
             space_time: self.space_time.clone().or_else(|| base.space_time.clone()),
         }
     }
@@ -226,6 +235,11 @@ impl MorphEntry {
         }
         rows(&self.weights, &format!("{at}.weights"), recipe)?;
         rows(&self.deform_weights, &format!("{at}.deform_weights"), recipe)?;
+        for (feature, part) in &self.parts {
+            let at = join(&format!("{at}.parts"), feature);
+            known_feature(feature, &[], &at, recipe)?;
+            finite(&[part.offset.unwrap_or(0.0)], &format!("{at}.offset"))?;
+        }
         self.space_time.as_ref().map_or(Ok(()), |s| s.validate(&format!("{at}.space-time")))
     }
 }
@@ -254,14 +268,32 @@ fn known_shape(name: &str, at: &str, recipe: &Recipe) -> Result<(), Problem> {
     Err(Problem::new(at, format!("no shape is called `{name}`{hint}")))
 }
 
+fn known_feature(name: &str, also: &[&str], at: &str, recipe: &Recipe) -> Result<(), Problem> {
+    let names = || recipe.features.iter().map(|f| f.name.as_str()).chain(also.iter().copied());
+    if names().any(|n| n == name) {
+        return Ok(());
+    }
+    let hint = did_you_mean(name, names());
+    Err(Problem::new(at, format!("no feature is called `{name}`{hint}")))
+}
+
+/// The parts of both; what `mine` says of a part, key by key, goes first.
+fn over_parts(
+    mine: &BTreeMap<String, FeatureMorph>,
+    base: &BTreeMap<String, FeatureMorph>,
+) -> BTreeMap<String, FeatureMorph> {
+    let mut all = base.clone();
+    for (name, part) in mine {
+        let merged = all.get(name).map_or_else(|| part.clone(), |b| part.over(b));
+        all.insert(name.clone(), merged);
+    }
+    all
+}
+
 fn rows(rows: &Weights, at: &str, recipe: &Recipe) -> Result<(), Problem> {
     for (feature, row) in rows {
         let at = join(at, feature);
-        if feature != "default" && !recipe.features.iter().any(|f| f.name == *feature) {
-            let names = recipe.features.iter().map(|f| f.name.as_str()).chain(["default"]);
-            let hint = did_you_mean(feature, names);
-            return Err(Problem::new(at, format!("no feature is called `{feature}`{hint}")));
-        }
+        known_feature(feature, &["default"], &at, recipe)?;
         for (shape, &w) in row {
             let at = join(&at, shape);
             known_shape(shape, &at, recipe)?;
