@@ -1,7 +1,7 @@
 //! Automatic parameters, measured on the shapes as they lie in the hybrid's frames (GRAFT.md,
 //! recipe E; METHODS B).
 
-use super::hybrid::{Hybrid, Looked};
+use super::hybrid::{Hybrid, Looked, Placed};
 use super::inner::{Local, grow};
 use super::plan::{Form, Inner, SpaceTime};
 use super::space_time::{Bounded, height_for_volume};
@@ -22,8 +22,14 @@ const REACH_MARGIN: f64 = 1.1;
 const LEVEL_CAP: f64 = 12.0;
 /// Largest share of its half thickness by which a shape is thinned: more breaks its thinner members.
 const THINNEST: f64 = 0.4;
-/// Halvings of the share: to a four-thousandth of it.
+/// Largest share by which a shape is thickened where the merged shapes have too little volume.
+const THICKEST: f64 = 0.3;
+/// A share at which even a shape of nine tenths of the weight is at its limit.
+const LARGEST_SHARE: f64 = 2.0;
+/// Halvings of the range of shares: to a thousandth.
 const HALVINGS: u32 = 12;
+/// Ratio of the weights from which on a lesser shape is there whole: below it parts come and go.
+const WHOLE_FROM: f64 = 0.3;
 /// Largest height of the space-time blend in units of the reach: near t = 0 and 1 the blend is weak,
 /// and the height that would keep the volume grows without bound.
 const HEIGHT_CAP: f64 = 4.0;
@@ -38,9 +44,10 @@ pub(super) struct Measured {
     pub thin: Vec<f64>,
 }
 
-/// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes.
-fn measured(g: &[f64], lam: &[f64], inner: Inner) -> Measured {
-    let mut local = local(g, lam);
+/// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes; `sizes` are the
+/// volumes of their elements over that of the result's.
+pub(super) fn measured(g: &[f64], lam: &[f64], sizes: &[f64], inner: Inner) -> Measured {
+    let (mut local, wanted) = local(g, lam, sizes);
     let mut thin = vec![0.0; lam.len()];
     match inner {
         Inner::Linear => (local.apart, local.level) = (0.0, 0.0),
@@ -48,16 +55,17 @@ fn measured(g: &[f64], lam: &[f64], inner: Inner) -> Measured {
         Inner::Grow | Inner::Erode | Inner::SpaceTime => local.apart = 1.0,
         Inner::Merge => {
             local.apart = 1.0;
-            thin = thinning(g, lam, local.reach);
+            local.reach /= WHOLE_FROM;
+            thin = thinning(g, lam, local.reach, wanted);
         }
         Inner::Auto => {}
     }
     Measured { local, thin }
 }
 
-/// How much each shape is thinned so that the merged shapes keep the mean volume: the same share of
-/// the half thickness of each, at most [`THINNEST`].
-fn thinning(g: &[f64], lam: &[f64], reach: f64) -> Vec<f64> {
+/// How much each shape is thinned (thickened, where negative) so that the merged shapes fill `wanted`
+/// samples: shares of the half thickness of each, larger for those that weigh less.
+fn thinning(g: &[f64], lam: &[f64], reach: f64, wanted: f64) -> Vec<f64> {
     let k = lam.len();
     let (mut count, mut depth) = (vec![0u64; k], vec![0.0; k]);
     for row in g.chunks_exact(k) {
@@ -71,33 +79,37 @@ fn thinning(g: &[f64], lam: &[f64], reach: f64) -> Vec<f64> {
     // depths in a plate run evenly from none to its half thickness
     let half = |j: usize| if count[j] > 0 { 2.0 * depth[j] / count[j] as f64 } else { 0.0 };
     let half: Vec<f64> = (0..k).map(|j| if lam[j] > 0.0 { half(j) } else { 0.0 }).collect();
-    let wanted: f64 = count.iter().zip(lam).map(|(&c, l)| c as f64 * l).sum();
+    // by weight: at one half all shares are equal, at one there is nothing to thin
+    let thin = |share: f64| -> Vec<f64> {
+        let by = |(h, l): (&f64, &f64)| {
+            let by = (share * 2.0 * (1.0 - l)).clamp(-THICKEST, THINNEST);
+            (by * h).max(-LEVEL_CAP)
+        };
+        half.iter().zip(lam).map(by).collect()
+    };
     let mut row = vec![0.0; k];
     let mut inside = |share: f64| {
+        let thin = thin(share);
         let mut n = 0u64;
         for g in g.chunks_exact(k) {
-            for (r, (g, h)) in row.iter_mut().zip(g.iter().zip(&half)) {
-                *r = g + share * h;
+            for (r, (g, t)) in row.iter_mut().zip(g.iter().zip(&thin)) {
+                *r = g + t;
             }
             n += u64::from(grow(&row, lam, reach) < 0.0);
         }
         n as f64
     };
-    let (mut lo, mut hi) = (0.0, THINNEST);
-    if inside(0.0) <= wanted {
-        hi = 0.0;
-    } else if inside(hi) > wanted {
-        lo = hi;
-    }
+    // at these shares every shape is at one of its limits, unless it is there alone
+    let (mut lo, mut hi) = (-LARGEST_SHARE, LARGEST_SHARE);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (lo + hi);
         if inside(middle) > wanted { lo = middle } else { hi = middle }
     }
-    half.iter().map(|h| hi * h).collect()
+    thin(hi)
 }
 
-/// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes.
-fn local(g: &[f64], lam: &[f64]) -> Local {
+/// Parameters of one feature, and how many samples the mean volume is.
+fn local(g: &[f64], lam: &[f64], sizes: &[f64]) -> (Local, f64) {
     let k = lam.len();
     let present: Vec<usize> = (0..k).filter(|&j| lam[j] > 0.0).collect();
     let (mut far, mut depth) = (0.0f64, 0.0f64);
@@ -111,7 +123,7 @@ fn local(g: &[f64], lam: &[f64]) -> Local {
             most = most.max(row[j]);
             if row[j] < 0.0 {
                 inside += 1;
-                wanted += lam[j];
+                wanted += lam[j] * sizes.get(j).copied().unwrap_or(1.0);
                 depth = depth.max(-row[j]);
             }
         }
@@ -125,12 +137,13 @@ fn local(g: &[f64], lam: &[f64]) -> Local {
     }
     let overlap = if either > 0 { both as f64 / either as f64 } else { 1.0 };
     let level = if present.len() > 1 { level(&mut means, wanted) } else { 0.0 };
-    Local {
+    let local = Local {
         reach: (far * REACH_MARGIN).max(LEAST_REACH),
         depth: (depth * REACH_MARGIN).max(1.0),
         apart: ((0.5 - overlap) / 0.3).clamp(0.0, 1.0),
         level,
-    }
+    };
+    (local, wanted)
 }
 
 /// The level below which `wanted` of the means lie, within the cap.
@@ -143,6 +156,12 @@ fn level(means: &mut [f64], wanted: f64) -> f64 {
     level.clamp(0.0, LEVEL_CAP)
 }
 
+/// Volumes of the shapes' elements over that of the result's.
+pub(super) fn sizes(f: &Placed) -> Vec<f64> {
+    let own = f.element.half.element_product();
+    f.maps.iter().map(|m| m.to.half.element_product() / own).collect()
+}
+
 /// Measures the features of a hybrid, or the whole shapes over `domain` where it has none.
 pub(super) fn locals(
     h: &Hybrid,
@@ -153,14 +172,14 @@ pub(super) fn locals(
     if h.features.is_empty() {
         let looked = look(h, &lattice(domain), job)?;
         let inner = inners.first().copied().unwrap_or(Inner::Auto);
-        return Ok(vec![measured(&looked.g, &h.lam, inner)]);
+        return Ok(vec![measured(&looked.g, &h.lam, &[], inner)]);
     }
     h.features
         .iter()
         .zip(inners)
         .map(|(f, &inner)| {
             let at: Vec<DVec3> = cube(FEATURE_SIDE).map(|q| f.element.to_world(q)).collect();
-            Ok(measured(&look(h, &at, job)?.g, &f.lam, inner))
+            Ok(measured(&look(h, &at, job)?.g, &f.lam, &sizes(f), inner))
         })
         .collect()
 }
