@@ -47,7 +47,7 @@
 //! |---|---|
 //! | 7 | [`run`] |
 //! | 6 | [`scene`] |
-//! | 5 | [`morph`], [`iso`], [`check`], [`picture`], [`recipe`] |
+//! | 5 | [`morph`], [`parts`], [`iso`], [`check`], [`picture`], [`recipe`] |
 //! | 4 | [`field`] |
 //! | 3 | [`element`] |
 //! | 2 | [`bvh`], [`surface`] |
@@ -73,6 +73,7 @@ pub mod field;
 pub mod check;
 pub mod iso;
 pub mod morph;
+pub mod parts;
 pub mod picture;
 pub mod recipe;
 // floor 6

@@ -10,7 +10,7 @@ const FLOORS: &[&[&str]] = &[
     &["bvh", "surface"],
     &["element"],
     &["field"],
-    &["morph", "iso", "check", "picture", "recipe"],
+    &["morph", "parts", "iso", "check", "picture", "recipe"],
     &["scene"],
     &["run"],
     &["cli"],

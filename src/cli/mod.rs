@@ -6,6 +6,7 @@
 mod check;
 mod convert;
 mod failure;
+mod features;
 mod inputs;
 mod morph;
 mod npy;
@@ -58,6 +59,9 @@ enum Command {
     Check(check::Check),
     /// Turn any mesh, or a solid, into a clean watertight mesh
     Convert(Box<convert::Convert>),
+    /// Find the parts of chairs, and suggest feature elements for them
+    #[command(subcommand)]
+    Features(features::Features),
     /// Draw meshes: one picture, or a sheet of many
     Picture(picture::Picture),
     /// Print the JSON Schema of the recipe
@@ -104,6 +108,7 @@ pub fn main() -> ExitCode {
         Command::Run(c) => c.run(&watch),
         Command::Check(c) => c.run(&watch),
         Command::Convert(c) => c.run(&watch),
+        Command::Features(c) => c.run(&watch),
         Command::Picture(c) => c.run(&watch),
         Command::Schema => shell::schema(),
         Command::Completions(c) => c.run(),

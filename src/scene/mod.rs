@@ -13,6 +13,7 @@ mod place;
 mod plan;
 mod rows;
 mod single;
+pub mod suggest;
 pub mod surface;
 mod variant;
 

@@ -1,0 +1,152 @@
+//! Finding the parts of a chair in its field, and pairing those of several chairs.
+//!
+//! A chair is looked at as a small grid of solid samples: how it stands (mirror plane, front), its
+//! seat, what carries it, its back and arm rests. Meshes need not be clean, since only the field is
+//! asked. [`suggest`] gives the pose of every shape and the feature elements of all of them, paired
+//! by name.
+//!
+//! - A *pose* puts the floor at z = 0, the mirror plane at x = 0 and the front towards -y.
+//! - *Left* is -x and *right* is +x, *front* is -y: as seen by who looks at the chair's front.
+//! - A *base* is what carries the seat: legs, a column, runners, or a solid body.
+//! - *Confidence* is a number in [0, 1]; below [`DOUBTFUL`] the suggestion is a guess.
+//!
+//! What is no chair gets three slabs from top to bottom, with a low confidence.
+
+mod above;
+mod base;
+mod chair;
+mod find;
+mod fit;
+mod legs;
+mod mask;
+mod mirror;
+mod pair;
+mod seat;
+mod slabs;
+mod volume;
+
+#[cfg(test)]
+mod tests;
+
+pub use chair::{Arm, Back, Base, Chair, Column, Leg, Pose, Seat};
+
+use crate::element::Element;
+use crate::field::Field;
+use crate::job::{Cancelled, Job};
+use crate::num::Aabb;
+use find::Look;
+use glam::DVec3;
+
+/// Below this confidence a shape is hardly a chair.
+pub const DOUBTFUL: f64 = 0.35;
+
+/// What is suggested for some shapes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Suggestion {
+    /// One a shape, in their order.
+    pub shapes: Vec<Guess>,
+    /// Features of all shapes, in their poses.
+    pub features: Vec<Paired>,
+}
+
+/// What was found of a shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guess {
+    /// Its name.
+    pub name: String,
+    /// How it should be stood.
+    pub pose: Pose,
+    /// The box round it in its pose, mm.
+    pub bounds: Aabb,
+    /// Its parts in its pose, if it seems to be a chair.
+    pub chair: Option<Chair>,
+    /// How far to trust this, in [0, 1].
+    pub confidence: f64,
+    /// What to look at.
+    pub warnings: Vec<String>,
+}
+
+/// A suggested feature.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Paired {
+    /// Its name, such as `leg front left`.
+    pub name: String,
+    /// One element a shape, in the order of the shapes, each in its shape's pose.
+    pub elements: Vec<Element>,
+    /// How far to trust it, in [0, 1].
+    pub confidence: f64,
+    /// What else is to be said of it.
+    pub note: Note,
+}
+
+/// Where the elements of a feature come from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Note {
+    /// Found on every shape.
+    Found,
+    /// These shapes (by index) have no such part; their element is where it would be.
+    Absent(Vec<usize>),
+    /// Legs on one side, slices and spokes of a column on the other.
+    Bundle,
+    /// Different numbers of legs: one may stand for two.
+    Mixed,
+    /// No part of a chair: a slab of the whole shape.
+    Slab,
+}
+
+/// Suggests poses and features for some shapes, named and given as fields in mm, z up.
+///
+/// # Errors
+/// Cancelled.
+pub fn suggest(
+    shapes: &[(&str, &dyn Field)],
+    job: &dyn Job,
+) -> Result<Suggestion, Cancelled> {
+    let mut guesses = Vec::with_capacity(shapes.len());
+    for (name, field) in shapes {
+        guesses.push(guess(name, find::look(*field, job)?));
+    }
+    scale(&mut guesses);
+    Ok(Suggestion { features: features(&guesses), shapes: guesses })
+}
+
+fn guess(name: &str, look: Option<Look>) -> Guess {
+    let Some(look) = look else {
+        return Guess {
+            name: name.to_owned(),
+            pose: Pose { scale: 1.0, turn: 0.0, shift: DVec3::ZERO },
+            bounds: Aabb::EMPTY,
+            chair: None,
+            confidence: 0.0,
+            warnings: vec!["nothing solid was found".to_owned()],
+        };
+    };
+    let confidence = look.chair.as_ref().map_or(0.0, Chair::confidence);
+    let chair = look.chair.filter(|_| confidence >= DOUBTFUL);
+    let mut warnings = look.warnings;
+    if chair.is_none() {
+        warnings.push("does not look like a chair".to_owned());
+    }
+    Guess {
+        name: name.to_owned(),
+        pose: Pose { scale: 1.0, turn: look.stand.turn, shift: look.stand.shift },
+        bounds: look.bounds,
+        chair,
+        confidence,
+        warnings,
+    }
+}
+
+/// Sizes are kept; chairs of other scales need `height` first.
+fn scale(_guesses: &mut [Guess]) {}
+
+fn features(guesses: &[Guess]) -> Vec<Paired> {
+    let chairs: Option<Vec<&Chair>> = guesses.iter().map(|g| g.chair.as_ref()).collect();
+    match chairs {
+        Some(chairs) if !chairs.is_empty() => pair::pair(&chairs),
+        _ => {
+            let boxes: Vec<Aabb> = guesses.iter().map(|g| g.bounds).collect();
+            slabs::slabs(&boxes)
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! The parts of several chairs brought into correspondence.
+
+use super::chair::{Base, Chair, Leg};
+use super::fit;
+use super::{Note, Paired};
+use crate::element::{Element, ElementError};
+use glam::{DVec2, DVec3};
+use std::f64::consts::FRAC_1_SQRT_2;
+
+/// A place round the seat that legs are matched to.
+struct Slot {
+    name: String,
+    /// Unit direction from the seat's centre.
+    to: DVec2,
+}
+
+/// Elements of the same parts on every chair. A part that no element can be made of is left out.
+pub(super) fn pair(chairs: &[&Chair]) -> Vec<Paired> {
+    let mut all = Vec::new();
+    let sure = |i: usize| chairs.iter().map(|c| c.sure[i]).fold(1.0, f64::min);
+    let mut put = |name: String, elements: Result<Vec<Element>, ElementError>, sure, note| {
+        if let Ok(elements) = elements {
+            all.push(Paired { name, elements, confidence: sure, note });
+        }
+    };
+    put("seat".to_owned(), chairs.iter().map(|c| fit::seat(&c.seat)).collect(), sure(1), Note::Found);
+    let backs = |c: &Chair| c.back.map(|b| fit::back(&c.seat, &b));
+    if let Some((elements, note)) = shared(chairs, backs) {
+        put("back".to_owned(), elements, sure(0), note);
+    }
+    for (side, name) in ["arm left", "arm right"].into_iter().enumerate() {
+        let arms = |c: &Chair| c.arms[side].map(|a| fit::arm(&a));
+        if let Some((elements, note)) = shared(chairs, arms) {
+            put(name.to_owned(), elements, sure(0), note);
+        }
+    }
+    let column = chairs.iter().any(|c| matches!(c.base, Base::Column(_)));
+    for slot in slots(chairs) {
+        let legs = |part: Part| chairs.iter().map(|c| strut(c, &slot, part)).collect();
+        let name = |what: &str| format!("{what} {}", slot.name).trim_end().to_owned();
+        if column {
+            put(name("leg"), legs(Part::Upper), sure(2), Note::Bundle);
+            put(name("foot"), legs(Part::Foot), sure(2), Note::Bundle);
+        } else {
+            let note = if mixed(chairs) { Note::Mixed } else { Note::Found };
+            put(name("leg"), legs(Part::Whole), sure(2), note);
+        }
+    }
+    all
+}
+
+/// Whether the chairs stand on different numbers of struts.
+fn mixed(chairs: &[&Chair]) -> bool {
+    let count = |c: &&Chair| fit::struts(&c.base).len();
+    chairs.iter().any(|c| count(c) != count(&chairs[0]))
+}
+
+/// Elements of a part that some chairs have; where one has it not, the place it would be at.
+fn shared(
+    chairs: &[&Chair],
+    part: impl Fn(&Chair) -> Option<Result<Element, ElementError>>,
+) -> Option<(Result<Vec<Element>, ElementError>, Note)> {
+    let (model, first) = chairs.iter().enumerate().find_map(|(i, c)| Some((i, part(c)?)))?;
+    let first = match first {
+        Ok(e) => e,
+        Err(e) => return Some((Err(e), Note::Found)),
+    };
+    let mut without = Vec::new();
+    let elements = chairs
+        .iter()
+        .enumerate()
+        .map(|(i, c)| {
+            part(c).unwrap_or_else(|| {
+                without.push(i);
+                fit::transplanted(&first, chairs[model], c)
+            })
+        })
+        .collect();
+    let note = if without.is_empty() { Note::Found } else { Note::Absent(without) };
+    Some((elements, note))
+}
+
+/// Which part of a leg an element is for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Whole,
+    /// Above the hub.
+    Upper,
+    /// Below the hub.
+    Foot,
+}
+
+/// Where a foot ends, a share of the height up to the board, on chairs that have no hub.
+const HUB: f64 = 0.2;
+
+/// The places legs are matched to: those of the chair with four legs, else with most.
+fn slots(chairs: &[&Chair]) -> Vec<Slot> {
+    let counts = chairs.iter().map(|c| fit::struts(&c.base).len());
+    let four = chairs.iter().any(|c| fit::struts(&c.base).len() == 4);
+    let count = if four { 4 } else { counts.max().unwrap_or(0) };
+    let d = FRAC_1_SQRT_2;
+    let slot = |name: &str, x: f64, y: f64| Slot { name: name.to_owned(), to: DVec2::new(x, y) };
+    match count {
+        // nothing but columns and solids: one body carries each
+        0 => vec![slot("", 0.0, 1.0)],
+        2 => vec![slot("left", -1.0, 0.0), slot("right", 1.0, 0.0)],
+        4 => vec![
+            slot("front left", -d, -d),
+            slot("back left", -d, d),
+            slot("back right", d, d),
+            slot("front right", d, -d),
+        ],
+        n => {
+            let model = chairs.iter().find(|c| fit::struts(&c.base).len() == n);
+            let legs = model.map_or(&[][..], |c| fit::struts(&c.base));
+            let to = |l: &Leg| outward(l, chairs[0]);
+            legs.iter()
+                .enumerate()
+                .map(|(i, l)| Slot { name: (i + 1).to_string(), to: to(l) })
+                .collect()
+        }
+    }
+}
+
+/// Direction of a leg from the middle of all legs' middles, as seen from the seat.
+fn outward(leg: &Leg, chair: &Chair) -> DVec2 {
+    let centre = 0.5 * (chair.seat.low + chair.seat.high);
+    let size = (chair.seat.high - chair.seat.low).max(DVec2::ONE);
+    ((0.5 * (leg.foot + leg.head).truncate() - centre) / size).normalize_or_zero()
+}
+
+/// The element of a chair that stands for the leg of a slot.
+fn strut(c: &Chair, slot: &Slot, part: Part) -> Result<Element, ElementError> {
+    let board = c.seat.top - c.seat.thickness;
+    match &c.base {
+        Base::Column(col) if part == Part::Foot => fit::spoke(col, slot.to),
+        Base::Column(col) if part == Part::Upper => {
+            fit::slice(col, slot.to, col.hub.min(0.8 * board), board)
+        }
+        Base::Column(col) => fit::block(
+            (col.axis - col.reach).extend(0.0),
+            (col.axis + col.reach).extend(board.max(1.0)),
+        ),
+        base => match matched(c, slot) {
+            Some(leg) => fit::leg(&piece(&leg, part)),
+            None if matches!(base, Base::Solid) && slot.name.is_empty() => fit::block(
+                c.seat.low.extend(0.0),
+                c.seat.high.extend(board.max(1.0)),
+            ),
+            None => {
+                let corner = fit::corner(&c.seat, slot.to)?;
+                let (low, high) = (corner.centre - corner.half, corner.centre + corner.half);
+                let cut = low.z + HUB * (high.z - low.z);
+                match part {
+                    Part::Whole => Ok(corner),
+                    Part::Upper => fit::block(low.with_z(cut), high),
+                    Part::Foot => fit::block(low, high.with_z(cut)),
+                }
+            }
+        },
+    }
+}
+
+/// The part of a leg above or below its hub.
+fn piece(leg: &Leg, part: Part) -> Leg {
+    let hub = leg.foot.lerp(leg.head, HUB);
+    match part {
+        Part::Whole => *leg,
+        Part::Upper => Leg { foot: hub, ..*leg },
+        Part::Foot => Leg { head: hub, ..*leg },
+    }
+}
+
+/// The leg for a slot; one that has to stand for two is cut in halves.
+fn matched(c: &Chair, slot: &Slot) -> Option<Leg> {
+    let legs = fit::struts(&c.base);
+    let near = |l: &&Leg| outward(l, c).dot(slot.to);
+    if legs.len() == 4 {
+        // by order, not by angle: legs that cross or splay keep their names
+        let order = quadrants(legs);
+        let i = usize::from(slot.to.x > 0.0) + 2 * usize::from(slot.to.y > 0.0);
+        if slot.to.x != 0.0 && slot.to.y != 0.0 {
+            return order.map(|o| legs[o[i]]);
+        }
+    }
+    let leg = *legs.iter().max_by(|a, b| near(a).total_cmp(&near(b)))?;
+    let alone = legs.len() >= 4 || outward(&leg, c).dot(slot.to) > 0.9;
+    if alone {
+        return Some(leg);
+    }
+    let shift = DVec3::X * 0.5 * leg.radius * slot.to.x.signum();
+    let half = Leg {
+        foot: leg.foot + shift,
+        head: leg.head + shift,
+        radius: 0.5 * leg.radius,
+        reach: leg.reach - 0.5 * leg.radius,
+    };
+    Some(half)
+}
+
+/// Which of four legs stands front left, front right, back left, back right: the two foremost by
+/// their middles, then by side.
+fn quadrants(legs: &[Leg]) -> Option<[usize; 4]> {
+    let middle = |i: &usize| 0.5 * (legs[*i].foot + legs[*i].head);
+    let mut by_y: Vec<usize> = (0..legs.len()).collect();
+    by_y.sort_by(|a, b| middle(a).y.total_cmp(&middle(b).y));
+    let [a, b, c, d] = <[usize; 4]>::try_from(by_y).ok()?;
+    let by_x = |a: usize, b: usize| {
+        if middle(&a).x <= middle(&b).x { [a, b] } else { [b, a] }
+    };
+    let ([fl, fr], [bl, br]) = (by_x(a, b), by_x(c, d));
+    Some([fl, fr, bl, br])
+}
