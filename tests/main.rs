@@ -8,5 +8,7 @@ mod cli;
 mod floors;
 /// Morphs of our own chairs with their features.
 mod morph;
+/// Parametric surfaces together with the rest.
+mod surfaces;
 /// Running the command and looking at what it did.
 mod util;

@@ -1,4 +1,4 @@
-//! `convert`: any mesh, or a solid, into a clean watertight mesh.
+//! `convert`: any mesh, solid or surface, into a clean watertight mesh.
 
 use super::failure::Failure;
 use super::inputs::{self, Fineness, Reading};
@@ -19,7 +19,7 @@ use std::time::Instant;
 /// What to convert.
 #[derive(Args)]
 pub struct Convert {
-    /// A mesh (OBJ, STL, PLY, GLB, glTF) or a solid (`.toml`)
+    /// A mesh (OBJ, STL, PLY, GLB, glTF), or a solid or surface (`.toml`)
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// A mesh (STL, OBJ, PLY, GLB), or a field: the dense samples as `.npy`, with a `.json` beside
@@ -29,7 +29,8 @@ pub struct Convert {
     reading: Reading,
     #[command(flatten)]
     fineness: Fineness,
-    /// Write the triangles as they are: the mesh itself, or the raw shells of a solid's parts
+    /// Write the triangles as they are: the mesh itself, the raw shells of a solid's parts, or a
+    /// surface without its thickness
     #[arg(long, conflicts_with_all = ["resolution", "voxel", "thicken", "sign"])]
     shells: bool,
     /// Drop loose pieces below this share of the volume
@@ -61,8 +62,8 @@ impl Convert {
         if self.making.dry_run {
             return Ok(());
         }
-        let (lattice, inputs) = (single.lattice, single.input().cloned().into_iter().collect());
-        let mut notes = vec![single.note().to_owned()];
+        let (lattice, inputs) = (single.lattice, single.inputs().to_vec());
+        let mut notes = single.notes().to_vec();
         let (field, found) = single.field(watch).map_err(plain)?;
         found.iter().for_each(|n| watch.say(unnamed(n)));
         notes.extend(found);
@@ -105,7 +106,7 @@ impl Convert {
         };
         watch.stage("read");
         let single = Single::open("input", entry, &grid, Path::new("")).map_err(plain)?;
-        watch.say(unnamed(single.note()));
+        single.notes().iter().for_each(|n| watch.say(unnamed(n)));
         Ok(single)
     }
 
@@ -157,7 +158,7 @@ impl Convert {
     }
 
     fn write_shells(&self, single: &Single, watch: &Watch) -> Result<(), Failure> {
-        let mesh = single.shells();
+        let mesh = single.shells().map_err(plain)?;
         if self.making.dry_run {
             return watch.put(&format!("triangles  {}", mesh.faces.len()));
         }

@@ -3,7 +3,8 @@
 use super::failure::Failure;
 use clap::Args;
 use fieldgraft::recipe::{
-    LengthUnit, MesherEntry, PlainOr, ShapeEntry, SignEntry, ThickenEntry, UpAxis, word,
+    LengthUnit, MesherEntry, PlainOr, ShapeEntry, SignEntry, UpAxis, kind, read_text,
+    word,
 };
 use std::path::Path;
 
@@ -25,6 +26,12 @@ pub struct Reading {
     /// How inside is told from outside: winding, or unsigned (all faces are sheets)
     #[arg(long, value_name = "SIGN", value_delimiter = ',')]
     pub sign: Vec<String>,
+    /// Give open or one-sided surfaces, and curves, this thickness; 0 gives none
+    #[arg(long, value_name = "MM", value_delimiter = ',')]
+    pub thickness: Vec<f64>,
+    /// Hold surfaces that move at this time in [0, 1]; auto lets them follow -t
+    #[arg(long, value_name = "T", value_delimiter = ',')]
+    pub at: Vec<String>,
 }
 
 impl Reading {
@@ -36,29 +43,65 @@ impl Reading {
         let sign = each("--sign", &self.sign, n, words::<SignEntry>)?;
         let height = each("--height", &self.height, n, lengths)?;
         let thicken = each("--thicken", &self.thicken, n, lengths)?;
+        let thickness = each("--thickness", &self.thickness, n, lengths)?;
+        let at = each("--at", &self.at, n, moments)?;
+        // one value for all is for those inputs that can have it, one each is meant as it is typed
+        let meant = |values: usize, fits: bool| fits || n == 1 || values == n;
         let entry = |i: usize, file: &Path| {
-            let thicken: Option<PlainOr<f64, ThickenEntry>> = thicken[i].map(PlainOr::Plain);
             let mut entry = ShapeEntry {
                 up: up[i],
                 unit: unit[i],
                 sign: sign[i].unwrap_or_default(),
                 height: height[i],
-                thicken,
                 ..ShapeEntry::default()
             };
-            // a solid file is a TOML or JSON text; everything else is a mesh
-            let text = file
-                .extension()
-                .is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"));
-            if text {
-                entry.solid = Some(PlainOr::Plain(file.to_owned()));
-            } else {
-                entry.mesh = Some(file.to_owned());
+            let is = source(file, &mut entry);
+            if meant(self.thicken.len(), is == Is::Mesh) {
+                entry.thicken = thicken[i].map(PlainOr::Plain);
+            }
+            if meant(self.thickness.len(), is == Is::Surface) {
+                entry.thickness = thickness[i];
+            }
+            if meant(self.at.len(), is == Is::Surface) {
+                entry.at = at[i];
             }
             entry
         };
         Ok(files.iter().enumerate().map(|(i, f)| entry(i, f.as_ref())).collect())
     }
+}
+
+/// What an input file is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Is {
+    /// A mesh.
+    Mesh,
+    /// A solid built of primitives.
+    Solid,
+    /// A parametric surface or curve.
+    Surface,
+}
+
+/// Makes a file the source of a shape. A TOML or JSON text is a solid or, by its `kind`, a surface;
+/// everything else is a mesh.
+pub fn source(file: &Path, entry: &mut ShapeEntry) -> Is {
+    if !is_text(file) {
+        entry.mesh = Some(file.to_owned());
+        return Is::Mesh;
+    }
+    let kind = read_text(file).ok().and_then(|text| kind(&text, file));
+    if kind.is_some_and(|kind| kind != "solid") {
+        entry.surface = Some(file.to_owned());
+        return Is::Surface;
+    }
+    entry.solid = Some(PlainOr::Plain(file.to_owned()));
+    Is::Solid
+}
+
+/// Whether a file is a text of ours by its name.
+pub fn is_text(file: &Path) -> bool {
+    file.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
 }
 
 /// One value a file from a list of none, one, or as many as there are files.
@@ -94,6 +137,15 @@ fn lengths(mm: &f64) -> Result<Option<f64>, String> {
     } else {
         Err(format!("got {mm}; expected millimetres, more than 0"))
     }
+}
+
+/// A time in [0, 1]; `auto` leaves it open.
+fn moments(text: &String) -> Result<Option<f64>, String> {
+    if text == "auto" {
+        return Ok(None);
+    }
+    let t = text.parse().ok().filter(|t| (0.0..=1.0).contains(t));
+    t.map(Some).ok_or_else(|| format!("got `{text}`; expected a time from 0 to 1, or auto"))
 }
 
 /// A mesher by name.

@@ -14,6 +14,7 @@ mod picture;
 mod run;
 mod shell;
 mod steps;
+mod surface;
 mod watch;
 
 use clap::{Args, Parser, Subcommand};
@@ -53,19 +54,21 @@ struct Common {
 enum Command {
     /// Morph two meshes or more into hybrids, without a recipe
     Morph(Box<morph::Morph>),
-    /// Make what a recipe says
+    /// Make what a recipe says, or one shape from its file
     Run(Box<run::Run>),
     /// Tell whether meshes can be printed: closed, manifold, free of self-contact, of one piece
     Check(check::Check),
-    /// Turn any mesh, or a solid, into a clean watertight mesh
+    /// Turn any mesh, solid or surface into a clean watertight mesh
     Convert(Box<convert::Convert>),
     /// Find the parts of chairs, and suggest feature elements for them
     #[command(subcommand)]
     Features(features::Features),
     /// Draw meshes: one picture, or a sheet of many
     Picture(picture::Picture),
+    /// Sample a parametric surface or curve, as points (CSV) or as a mesh
+    Surface(Box<surface::Surface>),
     /// Print the JSON Schema of the recipe
-    Schema,
+    Schema(shell::Schema),
     /// Print the completions of a shell
     Completions(shell::Completions),
     /// Print the manual page
@@ -110,7 +113,8 @@ pub fn main() -> ExitCode {
         Command::Convert(c) => c.run(&watch),
         Command::Features(c) => c.run(&watch),
         Command::Picture(c) => c.run(&watch),
-        Command::Schema => shell::schema(),
+        Command::Surface(c) => c.run(&watch),
+        Command::Schema(c) => c.run(),
         Command::Completions(c) => c.run(),
         Command::Man(c) => c.run(),
     };

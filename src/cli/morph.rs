@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 /// What to morph.
 #[derive(Args)]
 pub struct Morph {
-    /// Two meshes or more (OBJ, STL, PLY, GLB, glTF), or solids (`.toml`)
+    /// Two meshes or more (OBJ, STL, PLY, GLB, glTF), or solids and surfaces (`.toml`)
     #[arg(required = true, num_args = 2.., value_name = "MESH")]
     inputs: Vec<PathBuf>,
     /// Where the hybrid goes: STL, OBJ, PLY or GLB; `{t}` stands for the time

@@ -1,18 +1,22 @@
-//! `run`: makes what a recipe says.
+//! `run`: makes what a recipe says; or one shape, from its solid or surface file.
 
 use super::Making;
 use super::failure::Failure;
+use super::inputs::source;
 use super::steps::{self, Task};
 use super::watch::Watch;
 use clap::{Args, ValueEnum};
-use fieldgraft::recipe::{GridEntry, Recipe, RecipeError, Source, Times, read_text};
+use fieldgraft::recipe::{
+    GridEntry, PlainOr, Recipe, RecipeError, ShapeEntry, Source, Times, VERSION, kind, read_text,
+};
 use fieldgraft::run::Names;
+use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 /// What to run.
 #[derive(Args)]
 pub struct Run {
-    /// The recipe, TOML or JSON
+    /// The recipe, TOML or JSON; or a solid or surface file, to make that shape alone
     #[arg(value_name = "RECIPE")]
     recipe: PathBuf,
     /// Folder for the results; by default the current one
@@ -30,6 +34,9 @@ pub struct Run {
     /// Change a key, such as --set grid.resolution=128 or --set 'morph.inner="erode"'; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Thickness of a surface file that encloses nothing, and of a curve
+    #[arg(long, value_name = "MM", value_parser = thickness)]
+    thickness: Option<f64>,
     #[command(flatten)]
     making: Making,
 }
@@ -47,17 +54,55 @@ fn times(text: &str) -> Result<Times, String> {
     text.parse()
 }
 
+fn thickness(text: &str) -> Result<f64, String> {
+    let mm = text.parse().ok().filter(|mm: &f64| *mm > 0.0 && mm.is_finite());
+    mm.ok_or_else(|| format!("got `{text}`; expected millimetres, more than 0"))
+}
+
 impl Run {
     /// Makes everything.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
         let text = read_text(&self.recipe)
             .map_err(|why| Failure::input(format!("{}: {why}", self.recipe.display())))?;
-        let (mut recipe, source) = parse(&text, &self.recipe, &self.set)?;
+        let (mut recipe, source) = match kind(&text, &self.recipe) {
+            Some(_) => self.shape()?,
+            None if self.thickness.is_some() => {
+                let why = "is for a surface file alone; in a recipe each shape has its `thickness`";
+                return Err(Failure::usage(format!("--thickness: {why}")));
+            }
+            None => parse(&text, &self.recipe, &self.set)?,
+        };
         self.adjust(&mut recipe)?;
         let names = self.names(&recipe, &source)?;
         let beside = self.recipe.parent().unwrap_or(Path::new(""));
         let file = Some(self.recipe.display().to_string());
         steps::make(Task { recipe, source, beside, names, file }, &self.making, watch)
+    }
+
+    /// The recipe of the one shape that a file describes, under the file's name.
+    fn shape(&self) -> Result<(Recipe, Source), Failure> {
+        let stem = self.recipe.file_stem().unwrap_or_default().to_string_lossy();
+        // dots would part the key for --set
+        let name = stem.replace('.', "-");
+        let mut shape = ShapeEntry { thickness: self.thickness, ..ShapeEntry::default() };
+        source(&self.recipe, &mut shape);
+        // paths are relative to the recipe, which is taken to lie beside the file
+        let file = PathBuf::from(self.recipe.file_name().unwrap_or_default());
+        match shape.solid {
+            Some(_) => shape.solid = Some(PlainOr::Plain(file)),
+            None => shape.surface = Some(file),
+        }
+        let recipe = Recipe {
+            version: VERSION,
+            name: name.clone(),
+            shapes: BTreeMap::from([(name, shape)]),
+            ..Recipe::default()
+        };
+        let fail = |e: toml::ser::Error| Failure::new(Failure::FAILED, format!("recipe: {e}"));
+        let text = toml::to_string(&recipe).map_err(fail)?;
+        // this text is nobody's: errors have its keys, but no lines and no file
+        let (recipe, source) = parse(&text, Path::new(""), &self.set)?;
+        Ok((recipe, Source::unplaced(source.text().to_owned(), Path::new(""))))
     }
 
     /// What the command line overrides.
@@ -90,7 +135,8 @@ impl Run {
         let hybrids = !recipe.hybrids.is_empty();
         let several =
             recipe.variants().iter().any(|(_, v)| v.t.as_ref().is_some_and(|t| t.0.len() > 1));
-        let default = match (hybrids, several) {
+        let alone = recipe.shapes.len() == 1;
+        let default = match (hybrids || alone && !recipe.name.is_empty(), several) {
             (true, true) => "{name}-{t}.stl",
             (true, false) => "{name}.stl",
             (false, true) => "hybrid-{t}.stl",

@@ -6,9 +6,20 @@ use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 use fieldgraft::recipe;
 
-/// Prints the recipe's JSON Schema.
-pub fn schema() -> Result<(), Failure> {
-    watch::put(&serde_json::to_string_pretty(&recipe::schema()).unwrap_or_default())
+/// Which schema to print.
+#[derive(Args)]
+pub struct Schema {
+    /// That of surface files instead
+    #[arg(long)]
+    surface: bool,
+}
+
+impl Schema {
+    /// Prints it.
+    pub fn run(self) -> Result<(), Failure> {
+        let schema = if self.surface { recipe::surface_schema() } else { recipe::schema() };
+        watch::put(&serde_json::to_string_pretty(&schema).unwrap_or_default())
+    }
 }
 
 /// Which completions to print.

@@ -7,6 +7,7 @@ pub mod csg;
 pub mod mesh;
 pub mod sample;
 pub mod sampled;
+pub mod skin;
 pub mod solid;
 
 use crate::num::{Aabb, Interval};

@@ -10,9 +10,11 @@ mod hybrid;
 mod inner;
 mod measure;
 mod metamorphosis;
+mod moving;
 mod plan;
 mod space_time;
 
+pub use moving::Moment;
 pub use plan::{Blend, Course, Feature, Form, Frames, Inner, MorphError, Part, Plan, SpaceTime};
 
 use crate::field::Shared;

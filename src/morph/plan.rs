@@ -2,6 +2,7 @@
 
 use crate::element::Element;
 use crate::field::Shared;
+use crate::job::Cancelled;
 use crate::weight::{Ease, Weighting};
 
 /// A shape that takes part in a morph.
@@ -221,6 +222,19 @@ pub enum MorphError {
     /// A form that takes two shapes only.
     #[error("space-time form `half-cylinders` takes two shapes, got {0}; use `l` or `s`")]
     PairOnly(usize),
+    /// A shape that moves, and has no field at this time.
+    #[error("shape `{shape}` at t = {t}: {why}")]
+    Shape {
+        /// Its name.
+        shape: String,
+        /// The time.
+        t: f64,
+        /// What the surface says.
+        why: String,
+    },
+    /// The work was stopped.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// A number out of its range.
     #[error("{what} must be {expected}, got {got}")]
     Range {

@@ -12,6 +12,7 @@ mod primitive;
 mod shapes;
 mod solid;
 mod source;
+pub mod surface;
 mod time;
 mod value;
 
@@ -24,12 +25,14 @@ pub use method::{
 pub use output::{GridEntry, MesherEntry, OutputEntry};
 pub use primitive::{BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Primitive, PrismShape};
 pub use shapes::{
-    LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,
+    CurveEntry, LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, SkinEntry, ThickenEntry,
+    ThickenWhich, UpAxis,
 };
 pub use solid::{Mirror, Op, Part, Solid, SolidKind};
 pub(crate) use source::join;
-pub use source::{Problem, RecipeError, Source, read_text};
-pub use time::{TimeFn, Times};
+pub use source::{Problem, RecipeError, Source, kind, read_text};
+pub use surface::{SurfaceEntry, SurfaceMethod, parse_surface, surface_schema};
+pub use time::{TimeFn, Times, numbers};
 pub use value::{Auto, PlainOr};
 
 use schemars::JsonSchema;

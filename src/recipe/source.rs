@@ -70,6 +70,21 @@ pub fn read_text(path: &Path) -> Result<String, String> {
     fs::read_to_string(path).map_err(fail)
 }
 
+/// The `kind` that a TOML or JSON text begins with, if it has one: `solid`, or that of a surface file.
+/// Recipes have none.
+pub fn kind(text: &str, file: &Path) -> Option<String> {
+    if is_json(file) {
+        let value: serde_json::Value = serde_json::from_str(text).ok()?;
+        return value.get("kind")?.as_str().map(str::to_owned);
+    }
+    let table: toml::Table = text.parse().ok()?;
+    table.get("kind")?.as_str().map(str::to_owned)
+}
+
+fn is_json(file: &Path) -> bool {
+    file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
+}
+
 /// A text, its name, and where its keys stand.
 #[derive(Clone, Debug)]
 pub struct Source {
@@ -88,7 +103,7 @@ impl Source {
     /// # Errors
     /// Bad grammar, an unknown key (with the nearest known one), a wrong type.
     pub fn read<T: DeserializeOwned>(text: &str, file: &Path) -> Result<(T, Self), RecipeError> {
-        let json = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        let json = is_json(file);
         let mut source = Self { file: file.to_owned(), text: text.to_owned(), places: Vec::new() };
         if json { source.read_json() } else { source.read_toml() }.map(|t| (t, source))
     }

@@ -127,18 +127,26 @@ impl FromStr for Times {
 
     /// Numbers and ranges `from:to:step`, apart by commas.
     fn from_str(text: &str) -> Result<Self, String> {
-        let mut all = Vec::new();
-        for part in text.split(',') {
-            let fields: Vec<&str> = part.split(':').map(str::trim).collect();
-            let numbers: Option<Vec<f64>> = fields.iter().map(|s| s.parse().ok()).collect();
-            match numbers.as_deref() {
-                Some(&[t]) => all.push(t),
-                Some(&[from, to, step]) => range(from, to, step, &mut all)?,
-                _ => return Err(format!("got `{part}`; expected a number or from:to:step")),
-            }
-        }
-        Self::checked(all)
+        Self::checked(numbers(text)?)
     }
+}
+
+/// Numbers and ranges `from:to:step`, apart by commas; whether they can be times is not asked.
+///
+/// # Errors
+/// What is neither a number nor a range, in words.
+pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    let mut all = Vec::new();
+    for part in text.split(',') {
+        let fields: Vec<&str> = part.split(':').map(str::trim).collect();
+        let numbers: Option<Vec<f64>> = fields.iter().map(|s| s.parse().ok()).collect();
+        match numbers.as_deref() {
+            Some(&[t]) => all.push(t),
+            Some(&[from, to, step]) => range(from, to, step, &mut all)?,
+            _ => return Err(format!("got `{part}`; expected a number or from:to:step")),
+        }
+    }
+    Ok(all)
 }
 
 fn range(from: f64, to: f64, step: f64, out: &mut Vec<f64>) -> Result<(), String> {

@@ -106,8 +106,9 @@ pub fn run(
                 crumbs: variant.crumbs,
                 verify: settings.verify,
             };
-            let made = match variant.morph(t) {
+            let made = match variant.morph(t, job) {
                 Ok(morph) => make(&work, &|job| morph.at(t, job), job)?,
+                Err(MorphError::Cancelled(stop)) => return Err(stop.into()),
                 Err(e) => FrameResult::failed(&work, e.to_string()),
             };
             let mut frame = made.report;

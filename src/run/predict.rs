@@ -4,6 +4,7 @@ use crate::field::sample::sample;
 use crate::grid::{BRICK, Lattice};
 use crate::iso::{Mesher, extract};
 use crate::job::{Cancelled, Job};
+use crate::morph::MorphError;
 use crate::recipe::MorphEntry;
 use crate::scene::{Draft, Scene};
 use serde::Serialize;
@@ -124,7 +125,11 @@ pub fn probe(
     let mut most = Size::default();
     for v in &coarse.variants {
         for &t in &v.times {
-            let Ok(morph) = v.morph(t) else { continue };
+            let morph = match v.morph(t, job) {
+                Ok(morph) => morph,
+                Err(MorphError::Cancelled(stop)) => return Err(stop),
+                Err(_) => continue,
+            };
             let field = morph.at(t, job)?;
             let samples = sample(&*field, coarse.lattice, job)?;
             let mesh = extract(&samples.bricks, Mesher::Cone, job)?;

@@ -1,19 +1,22 @@
-//! A shape before it is a field: a mesh or the parts of a solid, read and movable.
+//! A shape before it is a field: a mesh, the parts of a solid or a surface, read and movable.
 
 use super::elements;
 use super::place::Similarity;
+use super::skinned::Skinned;
 use crate::element::{Element, Shape, middle_sheet, tessellate};
 use crate::field::csg::Join;
 use crate::field::solid::Part as SolidPart;
 use crate::mesh::TriMesh;
 use crate::num::Aabb;
 use crate::recipe::{Mirror, Op, Problem, Solid};
+use crate::surface::SurfaceError;
 use glam::DAffine3;
 
 /// What a shape is made of.
 pub(super) enum Body {
     Mesh(TriMesh),
     Solid(Vec<Piece>),
+    Surface(Skinned),
 }
 
 /// A part of a solid.
@@ -64,44 +67,72 @@ impl Body {
                 let moved = |p: Piece| Piece { part: moved_part(p.part, by), sheet: p.sheet };
                 Self::Solid(parts.into_iter().map(moved).collect())
             }
+            Self::Surface(skinned) => Self::Surface(skinned.moved(by)),
         }
     }
 
-    /// The box round it, mm; parts that are cut away do not count.
+    /// The scale that gives it this height, mm; none for a flat surface, or a thickness above it. A mesh
+    /// or solid without height keeps its size.
+    pub fn scale_to(&self, height: f64) -> Option<f64> {
+        if let Self::Surface(skinned) = self {
+            return skinned.scale_to(height);
+        }
+        let tall = self.bounds().size().z;
+        Some(if tall > 0.0 { height / tall } else { 1.0 })
+    }
+
+    /// The box round it, mm; parts that are cut away do not count, the thickness of a surface does; of
+    /// what moves, the box at all times.
     pub fn bounds(&self) -> Aabb {
         match self {
             Self::Mesh(mesh) => mesh.bounds(),
-            Self::Solid(_) => self.shells().bounds(),
+            Self::Solid(parts) => solid_triangles(parts, false).bounds(),
+            Self::Surface(skinned) => skinned.bounds(),
         }
     }
 
-    /// The triangles it is made of: the mesh itself, or closed shells of the parts that are not cut
-    /// away.
-    pub fn shells(&self) -> TriMesh {
-        self.triangles(false)
-    }
-
-    /// [`Body::shells`] with the parts that are sheets left open.
-    pub fn raw_shells(&self) -> TriMesh {
-        self.triangles(true)
-    }
-
-    fn triangles(&self, bare: bool) -> TriMesh {
+    /// The box at the given times, mm.
+    pub fn bounds_at(&self, times: &[f64]) -> Aabb {
         match self {
-            Self::Mesh(mesh) => mesh.clone(),
-            Self::Solid(parts) => {
-                let mut all = TriMesh::default();
-                for Piece { part, sheet } in parts.iter().filter(|p| p.part.join != Join::Cut) {
-                    let outline = if bare && *sheet { middle_sheet } else { tessellate };
-                    // parts of solids are primitives, all of which have an outline
-                    if let Some(shell) = outline(&part.element, SEGMENTS) {
-                        all.append(&shell);
-                    }
-                }
-                all
-            }
+            Self::Surface(skinned) => skinned.bounds_at(times),
+            still => still.bounds(),
         }
     }
+
+    /// Area of its triangles, mm²; the largest of what moves.
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Mesh(mesh) => mesh.area(),
+            Self::Solid(parts) => solid_triangles(parts, false).area(),
+            Self::Surface(skinned) => skinned.area(),
+        }
+    }
+
+    /// The triangles it is made of: the mesh itself, closed shells of the parts that are not cut
+    /// away (those that are sheets left open), or the surface at `t` as fine as cells of `step` mm ask.
+    ///
+    /// # Errors
+    /// What the surface says.
+    pub fn raw_shells(&self, t: f64, step: f64) -> Result<TriMesh, SurfaceError> {
+        match self {
+            Self::Mesh(mesh) => Ok(mesh.clone()),
+            Self::Solid(parts) => Ok(solid_triangles(parts, true)),
+            Self::Surface(skinned) => skinned.mesh(t, skinned.how.tolerance(step)),
+        }
+    }
+}
+
+/// Closed shells of the parts that are not cut away; `bare` leaves the sheets among them open.
+fn solid_triangles(parts: &[Piece], bare: bool) -> TriMesh {
+    let mut all = TriMesh::default();
+    for Piece { part, sheet } in parts.iter().filter(|p| p.part.join != Join::Cut) {
+        let outline = if bare && *sheet { middle_sheet } else { tessellate };
+        // parts of solids are primitives, all of which have an outline
+        if let Some(shell) = outline(&part.element, SEGMENTS) {
+            all.append(&shell);
+        }
+    }
+    all
 }
 
 fn images(element: Element, mirror: Option<Mirror>) -> Vec<Element> {

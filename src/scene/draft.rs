@@ -1,15 +1,14 @@
 //! Shapes read and placed: enough to know how large the work will be.
 
-use super::live::{self, LiveShape, Placed, Stop};
-use super::variant::Variant;
+use super::live::{self, Placed, Stop};
+use super::variant::{Variant, asked};
 use super::{Scene, SceneError, mesh_element, plan};
 use crate::grid::Lattice;
 use crate::job::{self, Job};
 use crate::num::Aabb;
 use crate::recipe::{GridEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join};
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// A recipe whose shapes have been read and placed.
 pub struct Draft {
@@ -18,6 +17,8 @@ pub struct Draft {
     /// The folder paths are relative to.
     beside: PathBuf,
     placed: Vec<Placed>,
+    /// What the shapes are for, by name.
+    uses: BTreeMap<String, Use>,
     /// Side of a cell, mm.
     step: f64,
 }
@@ -36,29 +37,29 @@ impl Draft {
         job.stage("read");
         // names are looked up freely from here on
         recipe.validate().map_err(|p| source.locate(p))?;
-        let names = used(&recipe).map_err(|p| source.locate(p))?;
-        let mut placed: Vec<Placed> = Vec::with_capacity(names.len());
+        let uses = uses(&recipe).map_err(|p| source.locate(p))?;
+        let mut placed: Vec<Placed> = Vec::with_capacity(uses.len());
         // those that stand like another come after it
-        let like = |n: &String| matches!(recipe.shapes[n].place, PlainOr::Table(_));
-        let (second, first): (Vec<String>, Vec<String>) = names.into_iter().partition(like);
+        let like = |n: &&String| matches!(recipe.shapes[*n].place, PlainOr::Table(_));
+        let (second, first): (Vec<&String>, Vec<&String>) = uses.keys().partition(like);
         let count = first.len() + second.len();
-        for (i, name) in first.iter().chain(&second).enumerate() {
+        for (i, &name) in first.iter().chain(&second).enumerate() {
             job::check(job)?;
             job.done(i as f64 / count as f64);
             let at = join("shapes", name);
             let entry = &recipe.shapes[name];
             let box_ = match &entry.place {
                 PlainOr::Table(PlaceLike { like }) => {
-                    placed.iter().find(|p| p.name == *like).map(|p| p.bounds)
+                    placed.iter().find(|p| p.name == *like).map(|p| p.stands)
                 }
                 PlainOr::Plain(_) => None,
             };
-            let shape = live::load(name, entry, beside, box_, &at);
+            let shape = live::load(name, entry, beside, box_, &uses[name].times, &at);
             placed.push(shape.map_err(|p| source.locate(p))?);
         }
         placed.sort_by(|a, b| a.name.cmp(&b.name));
         let step = step(&recipe.grid, longest(&placed));
-        Ok(Self { recipe, source, beside: beside.to_owned(), placed, step })
+        Ok(Self { recipe, source, beside: beside.to_owned(), placed, uses, step })
     }
 
     /// Side of a cell, mm.
@@ -101,7 +102,7 @@ impl Draft {
     /// What is wrong in the recipe or a file, by its key; cancelled.
     pub fn build(self, job: &dyn Job) -> Result<Scene, SceneError> {
         let (padding, step) = (self.padding(), self.step);
-        let Self { recipe, source, beside, placed, .. } = self;
+        let Self { recipe, source, beside, placed, uses, .. } = self;
         let locate = |p: Problem| SceneError::Bad(source.locate(p));
         let box_ = hull(&placed);
         fits(&Lattice::covering(&box_.grow(padding), step)).map_err(locate)?;
@@ -109,20 +110,16 @@ impl Draft {
         let (mut notes, mut inputs, mut shapes) = (Vec::new(), Vec::new(), Vec::new());
         for shape in placed {
             job.stage(&format!("shape {}", shape.name));
-            let (name, bounds) = (shape.name.clone(), shape.bounds);
-            notes.push(shape.note.clone());
-            inputs.extend(shape.input.clone());
-            let start = Instant::now();
-            let (exact, found) =
-                live::exact(shape, &recipe.shapes[&name], job).map_err(|stop| match stop {
-                    Stop::Problem(p) => locate(p),
-                    Stop::Cancelled(c) => c.into(),
-                })?;
+            notes.extend_from_slice(&shape.notes);
+            inputs.extend_from_slice(&shape.inputs);
+            let (entry, purpose) = (&recipe.shapes[&shape.name], &uses[&shape.name]);
+            let made = live::make(shape, entry, purpose, step, job).map_err(|stop| match stop {
+                Stop::Problem(p) => locate(p),
+                Stop::Cancelled(c) => c.into(),
+            });
+            let (shape, found) = made?;
             notes.extend(found);
-            let made = start.elapsed().as_secs_f64();
-            let (field, volume) = live::sampled(&*exact, step, job)?;
-            let seconds = [made, start.elapsed().as_secs_f64() - made];
-            shapes.push(LiveShape { name, field, volume, bounds, seconds });
+            shapes.push(shape);
         }
         let variants = recipe
             .variants()
@@ -130,31 +127,49 @@ impl Draft {
             .map(|(at, entry)| Variant::new(entry, at, &shapes, &meshes, &recipe))
             .collect::<Result<Vec<_>, _>>()
             .map_err(locate)?;
-        let mut domain = Aabb::EMPTY;
-        for v in &variants {
-            let morph = v.morph(0.5).map_err(|e| locate(Problem::new("morph", e.to_string())))?;
-            domain = domain.hull(morph.domain());
-        }
+        let domain = variants.iter().fold(Aabb::EMPTY, |b, v| b.hull(v.domain()));
         let lattice = Lattice::covering(&domain.grow(padding), step);
         fits(&lattice).map_err(locate)?;
         Ok(Scene { name: recipe.name, shapes, variants, lattice, notes, inputs })
     }
 }
 
-/// The shapes that some variant, or the place of one of them, needs.
-fn used(recipe: &Recipe) -> Result<BTreeSet<String>, Problem> {
-    let mut names = BTreeSet::new();
+/// What a shape is for.
+#[derive(Default)]
+pub(super) struct Use {
+    /// Times at which it is wanted, without repetition, in the order of the variants.
+    pub times: Vec<f64>,
+    /// Whether some variant is this shape alone.
+    pub alone: bool,
+}
+
+/// The shapes that some variant, or the place of one of them, needs, by name.
+fn uses(recipe: &Recipe) -> Result<BTreeMap<String, Use>, Problem> {
+    let mut uses: BTreeMap<String, Use> = BTreeMap::new();
     for (at, entry) in recipe.variants() {
-        let of = plan::shape_names(&entry, &at)?;
+        let of = plan::shape_names(&entry, recipe, &at)?;
         plan::method(&entry, of.len(), recipe, &at)?;
-        names.extend(of);
-    }
-    for name in names.clone() {
-        if let PlainOr::Table(PlaceLike { like }) = &recipe.shapes[&name].place {
-            names.insert(like.clone());
+        let alone = of.len() == 1;
+        for name in of {
+            let known = uses.entry(name.clone()).or_default();
+            known.alone |= alone;
+            known.add(&asked(&entry));
+            if let PlainOr::Table(PlaceLike { like }) = &recipe.shapes[&name].place {
+                uses.entry(like.clone()).or_default().add(&asked(&entry));
+            }
         }
     }
-    Ok(names)
+    Ok(uses)
+}
+
+impl Use {
+    fn add(&mut self, times: &[f64]) {
+        for t in times {
+            if !self.times.contains(t) {
+                self.times.push(*t);
+            }
+        }
+    }
 }
 
 fn hull(placed: &[Placed]) -> Aabb {

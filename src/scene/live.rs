@@ -1,107 +1,178 @@
 //! Shapes of a recipe, read, placed and made fields.
 
 use super::body::Body;
-use super::place::place;
-use super::{Input, digest};
+use super::draft::Use;
+use super::moving::Moving;
+use super::place::{Similarity, place};
+use super::skinned::{How, Skinned, SkinnedError};
+use super::{Input, digest, surface};
 use crate::field::mesh::{MeshField, MeshFieldError, MeshOptions, Sign, Thicken, Which};
 use crate::field::sampled::Sampled;
+use crate::field::skin::SkinError;
 use crate::field::solid::Assembly;
 use crate::field::{Field, Shared};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Assume, Unit, Up, read};
+use crate::morph::MorphError;
 use crate::num::Aabb;
 use crate::recipe::{
     self, LengthUnit, PlainOr, Problem, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,
     join,
 };
+use glam::DQuat;
+use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// A shape read and placed, not yet a field.
 pub(super) struct Placed {
     pub name: String,
     pub body: Body,
+    /// The box at the times asked for, mm.
     pub bounds: Aabb,
+    /// The box that others may stand like, mm.
+    pub stands: Aabb,
     /// Area of its triangles, mm², for predictions.
     pub area: f64,
-    pub note: String,
-    pub input: Option<Input>,
+    pub notes: Vec<String>,
+    pub inputs: Vec<Input>,
 }
 
 /// A shape as a field.
 pub struct LiveShape {
     /// Its name in the recipe.
     pub name: String,
-    /// The field that is looked up: its sampled form.
+    /// The field that is looked up: its sampled form; of a shape that moves, at its first time.
     pub field: Shared,
     /// Volume of the inside, mm³.
     pub volume: f64,
-    /// The box round it, mm.
+    /// The box round it, mm; of a shape that moves, at all times asked for.
     pub bounds: Aabb,
     /// Seconds to make its field and to sample it.
     pub seconds: [f64; 2],
+    /// The field itself, where a hybrid is this shape alone.
+    pub(super) exact: Option<Shared>,
+    /// The surface it comes from.
+    pub(super) surface: Option<Skinned>,
+    /// Its fields at other times.
+    pub(super) moving: Option<Arc<Moving>>,
 }
 
-/// Reads and places a shape; `at` is its key, `like` the box of the shape it stands like.
+impl LiveShape {
+    /// Whether it has another field at each t.
+    pub fn moves(&self) -> bool {
+        self.moving.is_some()
+    }
+}
+
+/// Reads and places a shape; `at` is its key, `like` the box of the shape it stands like, `times`
+/// those at which it is wanted.
 pub(super) fn load(
     name: &str,
     entry: &ShapeEntry,
     beside: &Path,
     like: Option<Aabb>,
+    times: &[f64],
     at: &str,
 ) -> Result<Placed, Problem> {
-    let (body, input, story) = match (&entry.mesh, &entry.solid) {
-        (Some(file), _) => mesh(entry, &beside.join(file), at)?,
-        (None, Some(PlainOr::Plain(file))) => solid_file(&beside.join(file), at)?,
-        (None, Some(PlainOr::Table(solid))) => {
-            (Body::solid(solid, &format!("{at}.solid"))?, None, "solid".to_owned())
+    let read = match (&entry.mesh, &entry.solid, &entry.surface) {
+        (Some(file), ..) => mesh(entry, &beside.join(file), at)?,
+        (None, Some(PlainOr::Plain(file)), _) => solid_file(&beside.join(file), at)?,
+        (None, Some(PlainOr::Table(solid)), _) => {
+            Read::new(Body::solid(solid, &format!("{at}.solid"))?, "solid".to_owned())
         }
-        (None, None) => return Err(Problem::new(at, "no source: give `mesh` or `solid`")),
+        (None, None, Some(file)) => surface_file(entry, &beside.join(file), at)?,
+        (None, None, None) => {
+            return Err(Problem::new(at, "no source: give `mesh`, `solid` or `surface`"));
+        }
     };
-    let body = place(body, entry, like);
-    let shells = body.shells();
-    let bounds = shells.bounds();
+    let Read { body, story, warnings, inputs } = read;
+    let body = place(body, entry, like, at)?;
+    let (bounds, stands) = (body.bounds_at(times), body.bounds());
     if bounds.is_empty() || !bounds.is_finite() {
         return Err(Problem::new(at, "the shape is empty: it has no triangle with a size"));
     }
     let size = bounds.size();
-    let note = format!("{name}: {story}; {:.0} x {:.0} x {:.0} mm", size.x, size.y, size.z);
-    Ok(Placed { name: name.to_owned(), area: shells.area(), body, bounds, note, input })
+    let mut notes =
+        vec![format!("{name}: {story}; {:.0} x {:.0} x {:.0} mm", size.x, size.y, size.z)];
+    notes.extend(warnings.into_iter().map(|w| format!("{name}: {w}")));
+    Ok(Placed { name: name.to_owned(), area: body.area(), body, bounds, stands, notes, inputs })
 }
 
-fn mesh(
-    entry: &ShapeEntry,
-    path: &Path,
-    at: &str,
-) -> Result<(Body, Option<Input>, String), Problem> {
+/// What was read for a shape.
+struct Read {
+    body: Body,
+    story: String,
+    warnings: Vec<String>,
+    inputs: Vec<Input>,
+}
+
+impl Read {
+    fn new(body: Body, story: String) -> Self {
+        Self { body, story, warnings: vec![], inputs: vec![] }
+    }
+}
+
+fn up(axis: UpAxis) -> Up {
+    match axis {
+        UpAxis::Y => Up::Y,
+        UpAxis::Z => Up::Z,
+    }
+}
+
+fn unit(unit: LengthUnit) -> Unit {
+    match unit {
+        LengthUnit::M => Unit::M,
+        LengthUnit::Cm => Unit::Cm,
+        LengthUnit::Mm => Unit::Mm,
+        LengthUnit::In => Unit::In,
+    }
+}
+
+fn mesh(entry: &ShapeEntry, path: &Path, at: &str) -> Result<Read, Problem> {
     let at = format!("{at}.mesh");
-    let assume = Assume {
-        up: entry.up.map(|u| match u {
-            UpAxis::Y => Up::Y,
-            UpAxis::Z => Up::Z,
-        }),
-        unit: entry.unit.map(|u| match u {
-            LengthUnit::M => Unit::M,
-            LengthUnit::Cm => Unit::Cm,
-            LengthUnit::Mm => Unit::Mm,
-            LengthUnit::In => Unit::In,
-        }),
-    };
+    let assume = Assume { up: entry.up.map(up), unit: entry.unit.map(unit) };
     let loaded = read(path, assume).map_err(|e| Problem::new(&at, e.to_string()))?;
     let input = digest(path).map_err(|e| Problem::new(&at, format!("{}: {e}", path.display())))?;
     let summary = loaded.found.summary().replace('\n', "; ");
     let story = format!("{}, {} up, unit {}: {summary}", path.display(), loaded.up, loaded.unit);
-    Ok((Body::Mesh(loaded.mesh), Some(input), story))
+    Ok(Read { inputs: vec![input], ..Read::new(Body::Mesh(loaded.mesh), story) })
 }
 
-fn solid_file(path: &Path, at: &str) -> Result<(Body, Option<Input>, String), Problem> {
+fn solid_file(path: &Path, at: &str) -> Result<Read, Problem> {
     let at = format!("{at}.solid");
     let fail = |e: String| Problem::new(&at, e);
     let text = recipe::read_text(path).map_err(|why| fail(format!("{}: {why}", path.display())))?;
     let solid = recipe::parse_solid(&text, path).map_err(|e| fail(e.to_string()))?;
     let body = Body::solid(&solid, "").map_err(|e| fail(format!("{}: {e}", path.display())))?;
     let input = digest(path).map_err(|e| fail(format!("{}: {e}", path.display())))?;
-    Ok((body, Some(input), format!("{}, solid of {} parts", path.display(), solid.parts.len())))
+    let story = format!("{}, solid of {} parts", path.display(), solid.parts.len());
+    Ok(Read { inputs: vec![input], ..Read::new(body, story) })
+}
+
+fn surface_file(entry: &ShapeEntry, path: &Path, at: &str) -> Result<Read, Problem> {
+    let key = format!("{at}.surface");
+    let fail = |why: String| Problem::new(&key, why);
+    let file = surface::open(path).map_err(|e| fail(e.to_string()))?;
+    let by = Similarity {
+        scale: entry.unit.map_or(1.0, |u| unit(u).mm()),
+        turn: match entry.up {
+            Some(UpAxis::Y) => DQuat::from_rotation_x(FRAC_PI_2),
+            Some(UpAxis::Z) | None => DQuat::IDENTITY,
+        },
+        ..Similarity::NONE
+    };
+    let named = |e: SkinnedError| match e {
+        SkinnedError::Skin(SkinError::Sheet(_)) => Problem::new(
+            format!("{at}.thickness"),
+            format!("{}: {e} (`thickness`, in mm)", path.display()),
+        ),
+        e => fail(format!("{}: {e}", path.display())),
+    };
+    let skinned = Skinned::new(file.object, How::of(entry), by, entry.at).map_err(named)?;
+    let story = format!("{}, {}", path.display(), file.story);
+    Ok(Read { body: Body::Surface(skinned), story, warnings: file.warnings, inputs: file.inputs })
 }
 
 /// What ends the making of a field.
@@ -122,13 +193,23 @@ impl From<Cancelled> for Stop {
     }
 }
 
-/// The field of a placed shape, and what was found on the way.
+/// The field of a placed shape for cells of `step` mm, and what was found on the way; of a shape that
+/// moves, at `t`.
 pub(super) fn exact(
     placed: Placed,
     entry: &ShapeEntry,
+    t: f64,
+    step: f64,
     job: &dyn Job,
 ) -> Result<(Shared, Vec<String>), Stop> {
     match placed.body {
+        Body::Surface(skinned) => {
+            let (field, sides) = skinned.field(t, step, job).map_err(|e| match e {
+                SkinnedError::Cancelled(c) => Stop::Cancelled(c),
+                e => Problem::new(join("shapes", &placed.name), e.to_string()).into(),
+            })?;
+            Ok((field, vec![format!("{}: {}", placed.name, sides.story())]))
+        }
         Body::Solid(parts) => {
             let at = join("shapes", &placed.name);
             let parts: Vec<_> = parts.into_iter().map(|p| p.part).collect();
@@ -146,6 +227,53 @@ pub(super) fn exact(
             Ok((Arc::new(field), notes.collect()))
         }
     }
+}
+
+/// A placed shape brought to life, and what was found on the way.
+pub(super) fn make(
+    placed: Placed,
+    entry: &ShapeEntry,
+    purpose: &Use,
+    step: f64,
+    job: &dyn Job,
+) -> Result<(LiveShape, Vec<String>), Stop> {
+    let start = Instant::now();
+    let (name, bounds) = (placed.name.clone(), placed.bounds);
+    let surface = match &placed.body {
+        Body::Surface(s) => Some(s.clone()),
+        _ => None,
+    };
+    let moves = surface.as_ref().filter(|s| s.moves());
+    if let Some(moves) = moves {
+        let moving = Arc::new(Moving::new(&name, moves.clone(), step));
+        let (field, volume) = first(&moving, &purpose.times, job)?;
+        let seconds = [start.elapsed().as_secs_f64(), 0.0];
+        let moving = Some(moving);
+        let shape =
+            LiveShape { name, field, volume, bounds, seconds, exact: None, surface, moving };
+        return Ok((shape, vec![]));
+    }
+    let (exact, notes) = exact(placed, entry, 0.5, step, job)?;
+    let made = start.elapsed().as_secs_f64();
+    let (field, volume) = sampled(&*exact, step, job)?;
+    let seconds = [made, start.elapsed().as_secs_f64() - made];
+    let exact = purpose.alone.then_some(exact);
+    let shape = LiveShape { name, field, volume, bounds, seconds, exact, surface, moving: None };
+    Ok((shape, notes))
+}
+
+/// What moves at the first of the times at which it has a field.
+fn first(moving: &Moving, times: &[f64], job: &dyn Job) -> Result<(Shared, f64), Stop> {
+    let mut why = None;
+    for &t in times {
+        match moving.at(t, job) {
+            Ok(moment) => return Ok(moment.sampled(job)?),
+            Err(MorphError::Cancelled(c)) => return Err(c.into()),
+            Err(e) => why = why.or(Some(e)),
+        }
+    }
+    let why = why.map_or_else(String::new, |e| e.to_string());
+    Err(Problem::new(join("shapes", moving.name()), why).into())
 }
 
 fn options(entry: &ShapeEntry) -> MeshOptions {

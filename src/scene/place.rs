@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use crate::num::Aabb;
-use crate::recipe::{Place, PlaceLike, PlainOr, ShapeEntry};
+use crate::recipe::{Place, PlaceLike, PlainOr, Problem, ShapeEntry};
 use glam::{DQuat, DVec3};
 
 /// A uniform scale, then a turn about z, then a shift.
@@ -19,15 +19,49 @@ impl Similarity {
     pub fn point(&self, p: DVec3) -> DVec3 {
         self.shift + self.turn * (p * self.scale)
     }
+
+    /// This, then `next`.
+    pub fn then(&self, next: &Self) -> Self {
+        Self {
+            scale: next.scale * self.scale,
+            turn: (next.turn * self.turn).normalize(),
+            shift: next.point(self.shift),
+        }
+    }
+
+    /// From this at t = 0 to `other` at t = 1, at constant speed; exactly either at its end.
+    pub fn between(&self, other: &Self, t: f64) -> Self {
+        if t <= 0.0 || self == other {
+            return *self;
+        }
+        if t >= 1.0 {
+            return *other;
+        }
+        Self {
+            scale: self.scale.powf(1.0 - t) * other.scale.powf(t),
+            turn: self.turn.slerp(other.turn, t),
+            shift: self.shift.lerp(other.shift, t),
+        }
+    }
 }
 
 /// Scales, turns and places a body as its entry says; `like` is the box of the shape it stands
-/// like, where it does.
-pub(super) fn place(body: Body, entry: &ShapeEntry, like: Option<Aabb>) -> Body {
+/// like, where it does; `at` is the shape's key.
+pub(super) fn place(
+    body: Body,
+    entry: &ShapeEntry,
+    like: Option<Aabb>,
+    at: &str,
+) -> Result<Body, Problem> {
     let turn = DQuat::from_rotation_z(entry.turn_deg.to_radians());
-    let tall = body.bounds().size().z;
-    // a body without height cannot be scaled to one; it is refused as empty later
-    let scale = entry.height.filter(|_| tall > 0.0).map_or(1.0, |h| h / tall);
+    let scale = match entry.height {
+        None => 1.0,
+        Some(h) => body.scale_to(h).ok_or_else(|| {
+            let tall = body.bounds().size().z;
+            let why = format!("the shape is {tall} mm high, thickness included; it cannot be scaled to {h}");
+            Problem::new(format!("{at}.height"), why)
+        })?,
+    };
     let body = body.moved(&Similarity { scale, turn, ..Similarity::NONE });
     let now = body.bounds();
     let shift = match (&entry.place, like) {
@@ -36,7 +70,10 @@ pub(super) fn place(body: Body, entry: &ShapeEntry, like: Option<Aabb>) -> Body 
         _ => DVec3::ZERO,
     };
     let shift = shift + DVec3::from_array(entry.shift);
-    if shift == DVec3::ZERO { body } else { body.moved(&Similarity { shift, ..Similarity::NONE }) }
+    if shift == DVec3::ZERO {
+        return Ok(body);
+    }
+    Ok(body.moved(&Similarity { shift, ..Similarity::NONE }))
 }
 
 /// The middle of the box's lowest side.

@@ -13,11 +13,16 @@ use crate::warp::Deform;
 use crate::weight::Weighting;
 use std::collections::BTreeMap;
 
-/// Which shapes an entry morphs, in order.
-pub(super) fn shape_names(entry: &MorphEntry, at: &str) -> Result<Vec<String>, Problem> {
+/// Which shapes an entry morphs, in order; the recipe's only one where it names none.
+pub(super) fn shape_names(
+    entry: &MorphEntry,
+    recipe: &Recipe,
+    at: &str,
+) -> Result<Vec<String>, Problem> {
     let names: Vec<String> = match (&entry.between, &entry.among) {
         (Some(pair), _) => pair.to_vec(),
         (None, Some(all)) => all.clone(),
+        (None, None) if recipe.shapes.len() == 1 => recipe.shapes.keys().cloned().collect(),
         (None, None) => {
             let why = "which shapes? give between = [\"a\", \"b\"] or among = [\"a\", \"b\", ...]";
             return Err(Problem::new(at, why));
@@ -25,8 +30,8 @@ pub(super) fn shape_names(entry: &MorphEntry, at: &str) -> Result<Vec<String>, P
     };
     let key = if entry.between.is_some() { "between" } else { "among" };
     let at = format!("{at}.{key}");
-    if names.len() < 2 {
-        return Err(Problem::new(at, format!("{} shape; a morph needs two or more", names.len())));
+    if names.is_empty() {
+        return Err(Problem::new(at, "no shape; give one to have it alone, or two or more to morph"));
     }
     for (i, name) in names.iter().enumerate() {
         if names[..i].contains(name) {
@@ -48,11 +53,16 @@ pub(super) fn method(
     let needs =
         matches!(asked, MethodEntry::Graft | MethodEntry::Group | MethodEntry::FeatureVolume);
     let at = format!("{at}.method");
+    if shapes == 1 && asked != MethodEntry::Auto {
+        let why = "this morph is of one shape, which is made as it is; remove the method";
+        return Err(Problem::new(at, why));
+    }
     if needs && !featured {
         let why = "this method needs features; add [[features]], or use \"space-time\"";
         return Err(Problem::new(at, why));
     }
     match asked {
+        MethodEntry::Auto if shapes == 1 => Ok(MethodEntry::Auto),
         MethodEntry::Graft if shapes != 2 => {
             let why = format!("a graft has two shapes, here are {shapes}; use \"group\"");
             Err(Problem::new(at, why))

@@ -8,7 +8,8 @@ use crate::grid::Lattice;
 use crate::job::Job;
 use crate::mesh::TriMesh;
 use crate::num::Aabb;
-use crate::recipe::{GridEntry, Problem, Recipe, ShapeEntry, Source};
+use crate::recipe::{GridEntry, Problem, Recipe, ShapeEntry, Source, join};
+use crate::surface::SurfaceError;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -16,6 +17,8 @@ use std::path::Path;
 pub struct Single {
     placed: live::Placed,
     entry: ShapeEntry,
+    /// The time of what moves.
+    t: f64,
     /// Where to sample it.
     pub lattice: Lattice,
 }
@@ -41,10 +44,11 @@ impl Single {
         };
         let locate = |p: Problem| SceneError::Bad(source.locate(p));
         recipe.validate().map_err(locate)?;
-        let at = crate::recipe::join("shapes", name);
-        let placed = live::load(name, &entry, beside, None, &at).map_err(locate)?;
+        let at = join("shapes", name);
+        let t = entry.at.unwrap_or(0.5);
+        let placed = live::load(name, &entry, beside, None, &[t], &at).map_err(locate)?;
         let lattice = cells(grid, placed.bounds, thickness(&entry)).map_err(locate)?;
-        Ok(Self { placed, entry, lattice })
+        Ok(Self { placed, entry, t, lattice })
     }
 
     /// The box round it, mm.
@@ -58,18 +62,26 @@ impl Single {
     }
 
     /// What was assumed and found.
-    pub fn note(&self) -> &str {
-        &self.placed.note
+    pub fn notes(&self) -> &[String] {
+        &self.placed.notes
     }
 
-    /// The file it came from.
-    pub fn input(&self) -> Option<&Input> {
-        self.placed.input.as_ref()
+    /// The files it came from.
+    pub fn inputs(&self) -> &[Input] {
+        &self.placed.inputs
     }
 
-    /// The triangles it is made of: the mesh itself, or the raw shells of a solid's parts.
-    pub fn shells(&self) -> TriMesh {
-        self.placed.body.raw_shells()
+    /// The triangles it is made of: the mesh itself, the raw shells of a solid's parts, or a surface
+    /// without its thickness.
+    ///
+    /// # Errors
+    /// What the surface says.
+    pub fn shells(&self) -> Result<TriMesh, SceneError> {
+        let bad = |e: SurfaceError| {
+            let problem = Problem::new(join("shapes", &self.placed.name), e.to_string());
+            SceneError::Bad(Source::unwritten().locate(problem))
+        };
+        self.placed.body.raw_shells(self.t, self.lattice.step).map_err(bad)
     }
 
     /// Its field, and what was found on the way.
@@ -78,7 +90,8 @@ impl Single {
     /// A mesh that encloses nothing; cancelled.
     pub fn field(self, job: &dyn Job) -> Result<(Shared, Vec<String>), SceneError> {
         let source = Source::unwritten();
-        live::exact(self.placed, &self.entry, job).map_err(|stop| match stop {
+        let (t, step) = (self.t, self.lattice.step);
+        live::exact(self.placed, &self.entry, t, step, job).map_err(|stop| match stop {
             Stop::Problem(p) => SceneError::Bad(source.locate(p)),
             Stop::Cancelled(c) => c.into(),
         })

@@ -139,7 +139,7 @@ fn cells_too_fine_for_a_file_are_refused() {
 fn dominant_frames_are_those_of_the_heavier_shape() {
     let inside = |frames: &str, t: f64, z: f64| {
         let s = scene(&format!("[morph]\nbetween = [\"a\", \"c\"]\nframes = \"{frames}\""));
-        let morph = s.unwrap().variants[0].morph(t).unwrap();
+        let morph = s.unwrap().variants[0].morph(t, &Quiet).unwrap();
         morph.at(t, &Quiet).unwrap().value(glam::DVec3::new(0.0, 0.0, z)) < 0.0
     };
     // a is 10 high in a frame of 12, c reaches 20/22 of its own; in a's frame both end below 10.5,

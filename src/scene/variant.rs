@@ -1,27 +1,48 @@
 //! One hybrid of a recipe: its plan, and the times at which it is made.
 
 use super::live::LiveShape;
+use super::moving::Moving;
 use super::plan;
 use crate::element::Element;
-use crate::morph::{Course, Frames, Morph, MorphError, Plan, build};
+use crate::field::Shared;
+use crate::job::{Job, Quiet};
+use crate::morph::{Course, Frames, Moment, Morph, MorphError, Plan, build};
+use crate::num::Aabb;
 use crate::recipe::{MethodEntry, MorphEntry, Problem, Recipe};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A hybrid to make.
 pub struct Variant {
     /// Its name; empty for a recipe's only one.
     pub name: String,
-    /// The method, `auto` decided.
+    /// The method, `auto` decided; of one shape alone, `auto`.
     pub method: MethodEntry,
     /// The times, in the order to make them.
     pub times: Vec<f64>,
     /// Loose pieces below this share of the volume are dropped.
     pub crumbs: f64,
-    /// Volumes of its shapes, mm³, in the order of the plan.
-    volumes: Vec<f64>,
-    plan: Plan,
-    /// Whether the frames are those of the shape that weighs most.
-    dominant: bool,
+    /// Shapes of the morph, in the order of the plan.
+    shapes: Vec<Member>,
+    way: Way,
+    /// What its results need, mm.
+    domain: Aabb,
+}
+
+/// A shape of a morph.
+struct Member {
+    volume: f64,
+    moving: Option<Arc<Moving>>,
+}
+
+/// How the field of a time is made.
+enum Way {
+    /// By the methods of `morph`; `dominant` when the frames are those of the shape that weighs most.
+    Plan { plan: Box<Plan>, dominant: bool },
+    /// One shape that keeps still.
+    Still(Shared),
+    /// One shape that moves.
+    Moving(Arc<Moving>),
 }
 
 impl Variant {
@@ -32,46 +53,117 @@ impl Variant {
         meshes: &BTreeMap<String, Element>,
         recipe: &Recipe,
     ) -> Result<Self, Problem> {
-        let names = plan::shape_names(entry, at)?;
+        let names = plan::shape_names(entry, recipe, at)?;
         let method = plan::method(entry, names.len(), recipe, at)?;
         let live: Vec<&LiveShape> =
             names.iter().filter_map(|n| shapes.iter().find(|s| s.name == *n)).collect();
-        let plan = plan::plan(entry, method, &live, meshes, recipe, at)?;
-        build(plan.clone()).map_err(|e| Problem::new(at, e.to_string()))?;
+        let way = match live[..] {
+            [shape] => alone(shape),
+            _ => {
+                let plan = plan::plan(entry, method, &live, meshes, recipe, at)?;
+                build(plan.clone()).map_err(|e| Problem::new(at, e.to_string()))?;
+                let dominant = entry.frames.as_deref() == Some("dominant");
+                Way::Plan { plan: Box::new(plan), dominant }
+            }
+        };
         let loose = matches!(method, MethodEntry::Graft | MethodEntry::Group);
+        let moves = way.moves() || live.iter().any(|s| s.moves());
         Ok(Self {
             name: entry.name.clone(),
             method,
-            times: times(entry, &plan, at)?,
+            times: times(entry, moves, at)?,
             crumbs: recipe.output.crumbs.unwrap_or(if loose { 0.02 } else { 0.0 }),
-            volumes: live.iter().map(|s| s.volume).collect(),
-            dominant: entry.frames.as_deref() == Some("dominant"),
-            plan,
+            domain: domain(&way, &live),
+            shapes: live
+                .iter()
+                .map(|s| Member { volume: s.volume, moving: s.moving.clone() })
+                .collect(),
+            way,
         })
     }
 
-    /// The morph at `t`; the time matters where the dominant shape gives the frames.
+    /// The morph at `t`: the time matters where a shape moves, or the dominant one gives the frames.
     ///
     /// # Errors
-    /// A plan that cannot be carried out; checked before, so not in a scene.
-    pub fn morph(&self, t: f64) -> Result<Box<dyn Morph>, MorphError> {
-        let mut plan = self.plan.clone();
-        if self.dominant {
+    /// A shape that has no field at this time; cancelled. A plan that cannot be carried out was found
+    /// out before.
+    pub fn morph(&self, t: f64, job: &dyn Job) -> Result<Box<dyn Morph>, MorphError> {
+        let (plan, dominant) = match &self.way {
+            Way::Still(field) => return Ok(Box::new(Moment(field.clone()))),
+            Way::Moving(shape) => return Ok(Box::new(Moment(shape.at(t, job)?.exact.clone()))),
+            Way::Plan { plan, dominant } => (plan, *dominant),
+        };
+        let mut plan = Plan::clone(plan);
+        for (part, shape) in plan.shapes.iter_mut().zip(&self.shapes) {
+            if let Some(moving) = &shape.moving {
+                part.field = moving.at(t, job)?.sampled(job)?.0;
+            }
+        }
+        if dominant {
             plan.frames = Frames::Of(heaviest(&plan, t));
         }
         build(plan)
     }
 
-    /// The weighted mean of the shapes' volumes at `t`, mm³; with features, the mean over them.
-    pub fn mean_volume(&self, t: f64) -> f64 {
-        let mean =
-            |c: &Course| -> f64 { c.at(t).iter().zip(&self.volumes).map(|(w, v)| w * v).sum() };
-        if self.plan.features.is_empty() {
-            return mean(&self.plan.course);
-        }
-        let sum: f64 = self.plan.features.iter().map(|f| mean(&f.morph)).sum();
-        sum / self.plan.features.len() as f64
+    /// A box that holds its results at all its times, mm.
+    pub fn domain(&self) -> Aabb {
+        self.domain
     }
+
+    /// The weighted mean of the shapes' volumes at `t`, mm³; with features, the mean over them. Not a
+    /// number where a shape has no field, and for a shape alone, which has nothing to be compared with.
+    pub fn mean_volume(&self, t: f64) -> f64 {
+        let Way::Plan { plan, .. } = &self.way else { return f64::NAN };
+        let volumes: Vec<f64> = self.shapes.iter().map(|s| s.volume_at(t)).collect();
+        let mean = |c: &Course| -> f64 { c.at(t).iter().zip(&volumes).map(|(w, v)| w * v).sum() };
+        if plan.features.is_empty() {
+            return mean(&plan.course);
+        }
+        let sum: f64 = plan.features.iter().map(|f| mean(&f.morph)).sum();
+        sum / plan.features.len() as f64
+    }
+}
+
+impl Member {
+    fn volume_at(&self, t: f64) -> f64 {
+        let Some(moving) = &self.moving else { return self.volume };
+        // the morph at this time has just been made, so this only looks it up
+        let found = moving.at(t, &Quiet).and_then(|m| Ok(m.sampled(&Quiet)?));
+        found.map_or(f64::NAN, |(_, volume)| volume)
+    }
+}
+
+impl Way {
+    /// Whether the weights depend on time, or the only shape does.
+    fn moves(&self) -> bool {
+        let pair = |c: &Course| matches!(c, Course::Pair(_));
+        match self {
+            Self::Still(_) => false,
+            Self::Moving(_) => true,
+            Self::Plan { plan, .. } if plan.features.is_empty() => pair(&plan.course),
+            Self::Plan { plan, .. } => {
+                plan.features.iter().any(|f| pair(&f.morph) || pair(&f.deform))
+            }
+        }
+    }
+}
+
+fn alone(shape: &LiveShape) -> Way {
+    match (&shape.moving, &shape.exact) {
+        (Some(moving), _) => Way::Moving(moving.clone()),
+        (None, Some(exact)) => Way::Still(exact.clone()),
+        (None, None) => Way::Still(shape.field.clone()),
+    }
+}
+
+/// The boxes of the fields, and those of what moves, grown by what the features add.
+fn domain(way: &Way, live: &[&LiveShape]) -> Aabb {
+    let add = match way {
+        Way::Plan { plan, .. } => plan.features.iter().fold(0.0, |o: f64, f| o.max(f.offset)),
+        _ => 0.0,
+    };
+    let boxes = live.iter().map(|s| s.field.support().hull(s.bounds).grow(add));
+    boxes.fold(Aabb::EMPTY, Aabb::hull)
 }
 
 /// The shape with the largest weight over all features; the first of equals.
@@ -92,19 +184,17 @@ fn heaviest(plan: &Plan, t: f64) -> usize {
 }
 
 /// The times asked for; one is enough where nothing depends on t.
-fn times(entry: &MorphEntry, plan: &Plan, at: &str) -> Result<Vec<f64>, Problem> {
-    let moves = |c: &Course| matches!(c, Course::Pair(_));
-    let moving = if plan.features.is_empty() {
-        moves(&plan.course)
-    } else {
-        plan.features.iter().any(|f| moves(&f.morph) || moves(&f.deform))
-    };
+fn times(entry: &MorphEntry, moves: bool, at: &str) -> Result<Vec<f64>, Problem> {
     match &entry.t {
-        None => Ok(vec![0.5]),
-        Some(t) if !moving && t.0.len() > 1 => {
-            let why = "nothing depends on t, the weights are fixed; remove it or the weights";
+        Some(t) if !moves && t.0.len() > 1 => {
+            let why = "nothing depends on t: no shape moves and the weights are fixed; give one time";
             Err(Problem::new(format!("{at}.t"), why))
         }
-        Some(t) => Ok(t.0.clone()),
+        _ => Ok(asked(entry)),
     }
+}
+
+/// The times an entry asks for.
+pub(super) fn asked(entry: &MorphEntry) -> Vec<f64> {
+    entry.t.as_ref().map_or(vec![0.5], |t| t.0.clone())
 }

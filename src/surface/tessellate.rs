@@ -48,6 +48,27 @@ pub fn tessellate(surface: &dyn Surface, tolerance: f64) -> Result<Tessellation,
     Ok(orient::finish(join(&grids, SNAP * size)))
 }
 
+/// The surface as the triangles of a net: `size` points over u and v of every patch, ends included.
+/// Border points that coincide become one, as in [`tessellate`].
+///
+/// # Errors
+/// Fewer than two points a side; points that are not finite; more than [`MOST_POINTS`] points.
+pub fn net(surface: &dyn Surface, size: [usize; 2]) -> Result<Tessellation, SurfaceError> {
+    let [nu, nv] = size;
+    if nu.min(nv) < 2 {
+        return Err(SurfaceError::new("samples", format!("{nu} x {nv}; at least 2 each way")));
+    }
+    let points = nu.saturating_mul(nv).saturating_mul(surface.patches());
+    if points > MOST_POINTS {
+        let why = format!("{points} points; at most {MOST_POINTS}");
+        return Err(SurfaceError::new("samples", why));
+    }
+    let near = SNAP * counts::size(surface)?;
+    let grid = |p| Grid::sample(surface, p, [nu - 1, nv - 1]);
+    let grids: Vec<Grid> = (0..surface.patches()).map(grid).collect::<Result<_, _>>()?;
+    Ok(orient::finish(join(&grids, near)))
+}
+
 /// Grids with steps small enough.
 fn refine(
     surface: &dyn Surface,

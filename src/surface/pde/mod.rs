@@ -29,6 +29,7 @@ mod chain;
 mod curve;
 mod morph;
 mod patch;
+mod pillow;
 mod solution;
 #[cfg(test)]
 mod tests;

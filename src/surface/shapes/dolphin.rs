@@ -1,108 +1,106 @@
 //! A dolphin of five PDE patches.
 
-use crate::surface::pde::{Boundary, Curve};
-use glam::{DVec3, dvec3};
+use crate::surface::pde::{Boundary, Options};
+use glam::{DAffine3, DMat3, DVec3, dvec3};
 
-/// The dolphin: body, tail flukes, dorsal fin, left and right side fin; about 310 mm from beak to flukes,
-/// nose to -Y, Z up. For the default options: `a` = 1, five modes.
+/// The dolphin: body, tail flukes, dorsal fin, left and right side fin; about 320 mm from beak to flukes,
+/// nose to -Y, Z up. For the default options: `a` = 1, five modes and the remainder.
 ///
-/// Every patch is closed by itself: its ends are poles, or folds, curves that run along a line and
-/// back. The fins begin inside the body, so the union of the five, by winding number, is one solid.
+/// Every patch is closed by itself, a pillow between two folds: the body between the lines of the
+/// back and the belly, a fin between the middles of its two faces. The fins begin inside the body, so
+/// the union of the five, by winding number, is one solid.
 pub fn dolphin() -> Vec<Boundary> {
-    let side = |x| fin(&SIDE.map(|s| s.mirrored(x)));
-    vec![body(), fin(&FLUKES), fin(&DORSAL), side(1.0), side(-1.0)]
+    vec![body(), FLUKES.patch(), DORSAL.patch(), SIDE.patch(), SIDE.patch_mirrored()]
 }
 
-/// The curves of the body as a sum of terms symmetric in x. By curve and n = 0, 1, ...: factors of
-/// cos(nv) in x and sin(nv) in y and z for odd n, the other way round for even n.
-///
-/// Fitted by least squares to drawn outlines of a bottlenose from the side and from above. The first
-/// curve is a fold, the line of the mouth; the last is a pole where the flukes sit.
-const BODY: [[[f64; 3]; 6]; 4] = [
-    [[0.0, -137.2, -4.7], [8.9, 0.0, 0.0], [0.0, 12.4, 0.0], [0.0; 3], [0.0; 3], [0.0; 3]],
-    [
-        [0.0, -52.1, 1.25],
-        [29.4, 12.2, 27.6],
-        [0.6, 7.8, -0.7],
-        [0.6, -0.3, 0.95],
-        [-0.5, 1.2, 0.2],
-        [0.2, -0.7, 0.3],
-    ],
-    [
-        [0.0, 22.9, -2.15],
-        [23.5, 24.9, 26.15],
-        [-2.7, 6.55, 1.55],
-        [-0.9, 2.8, -0.2],
-        [-0.1, 1.05, 0.25],
-        [0.1, -0.6, 0.15],
-    ],
-    [[0.0, 137.7, 5.0], [0.0; 3], [0.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]],
-];
+/// Along the body, from the beak (v = 0) to the tail: factors of cos(nv) from n = 0. Closer steps at the
+/// head.
+const ALONG: [f64; 3] = [-18.125, -145.0, 18.125];
+
+/// Height of the back and of the belly, and half the width: factors of cos(nv) from n = 0, and of
+/// sin(nv) from n = 1. They were fitted to drawn outlines of a bottlenose dolphin.
+const BACK: [f64; 13] =
+    [2.29, -8.99, -25.25, 2.47, 3.73, 1.67, 0.8, -0.72, -1.44, -0.85, -0.04, 0.6, 0.63];
+const BELLY: [f64; 13] =
+    [-25.85, -5.75, 3.69, 0.44, -2.32, 1.23, 0.15, 0.17, 0.32, -0.02, -0.03, 0.0, -0.05];
+const WIDTH: [f64; 12] =
+    [22.29, -0.17, -6.28, 0.26, 1.57, 0.28, 0.97, 0.0, -0.22, -0.52, -0.14, 0.02];
 
 fn body() -> Boundary {
-    Boundary::new(BODY.map(|rows| {
-        let [mean, terms @ ..] = rows;
-        let split = |(i, [x, y, z]): (usize, [f64; 3])| {
-            let (across, upright) = (dvec3(x, 0.0, 0.0), dvec3(0.0, y, z));
-            if i % 2 == 0 { [across, upright] } else { [upright, across] }
+    let line = |heights: [f64; 13]| -> Vec<DVec3> {
+        let along = ALONG.iter().chain(std::iter::repeat(&0.0));
+        heights.iter().zip(along).map(|(z, y)| dvec3(0.0, *y, *z)).collect()
+    };
+    let rim = WIDTH.map(|x| DVec3::X * x);
+    Boundary::pillow(&line(BACK), &line(BELLY), &rim, &Options::default())
+}
+
+/// A fin: its outline goes round from the tip (v = 0) along the front edge to the root and back.
+struct Fin {
+    root: DVec3,
+    /// Unit vectors from root to tip, from front to back, and from face to face.
+    axes: [DVec3; 3],
+    /// Places from root to tip: factors of cos(nv) from n = 0, as the next two.
+    span: &'static [f64],
+    /// Half way between the front and the back edge.
+    middle: &'static [f64],
+    /// Half the thickness, at the middle.
+    half: &'static [f64],
+    /// Half the distance of the edges: factors of sin(nv) from n = 1.
+    chord: &'static [f64],
+}
+
+const FLUKES: Fin = Fin {
+    root: dvec3(0.0, 131.0, -13.2),
+    axes: [DVec3::X, dvec3(0.0, 0.99, -0.139), dvec3(0.0, 0.139, 0.99)],
+    span: &[0.0, 72.0],
+    middle: &[30.1, 0.0, 17.36, 0.0, -1.86, 0.0, 2.41, 0.0, -1.65, 0.0, 1.12],
+    half: &[2.6, 0.0, -1.4],
+    chord: &[15.88, 0.0, -3.44, 0.0, -0.72, 0.0, 0.59, 0.0, -0.64, 0.0, 0.47],
+};
+
+const DORSAL: Fin = Fin {
+    root: DVec3::ZERO,
+    axes: [DVec3::Z, DVec3::Y, DVec3::X],
+    span: &[33.5, 31.5],
+    middle: &[13.74, 11.89, 10.37],
+    half: &[3.75, -2.75],
+    chord: &[21.0, -8.4],
+};
+
+const SIDE: Fin = Fin {
+    root: dvec3(14.0, -72.0, -15.0),
+    axes: [dvec3(0.777, 0.12, -0.618), dvec3(-0.094, 0.993, 0.074), dvec3(0.622, 0.0, 0.783)],
+    span: &[26.0, 32.0],
+    middle: &[7.95, 17.19, 5.86],
+    half: &[3.0, -2.0],
+    chord: &[13.5, -3.04],
+};
+
+impl Fin {
+    fn patch(&self) -> Boundary {
+        self.placed(&DAffine3::IDENTITY)
+    }
+
+    fn patch_mirrored(&self) -> Boundary {
+        self.placed(&DAffine3::from_scale(dvec3(-1.0, 1.0, 1.0)))
+    }
+
+    fn placed(&self, by: &DAffine3) -> Boundary {
+        let [out, back, up] = self.axes;
+        let frame = *by * DAffine3::from_mat3_translation(DMat3::from_cols(out, back, up), self.root);
+        let get = |list: &[f64], n: usize| list.get(n).copied().unwrap_or(0.0);
+        let face = |side: f64| -> Vec<DVec3> {
+            (0..self.span.len().max(self.middle.len()).max(self.half.len()))
+                .map(|n| {
+                    let at = [self.span, self.middle, self.half].map(|list| get(list, n));
+                    let at = dvec3(at[0], at[1], side * at[2]);
+                    if n == 0 { frame.transform_point3(at) } else { frame.transform_vector3(at) }
+                })
+                .collect()
         };
-        let terms = terms.into_iter().enumerate().map(split).collect();
-        Curve::Terms { mean: mean.into(), terms }
-    }))
-}
-
-/// A cross-section of a fin: a foil round the line from `front` to `back`, along y.
-#[derive(Clone, Copy)]
-struct Section {
-    /// Place of the section across y: x and z.
-    at: [f64; 2],
-    /// Front and back edge in y.
-    front: f64,
-    back: f64,
-    /// Half the thickness: a vector in x and z.
-    half: [f64; 2],
-}
-
-impl Section {
-    const fn new(at: [f64; 2], [front, back]: [f64; 2], half: [f64; 2]) -> Self {
-        Self { at, front, back, half }
+        let edge = |c: &f64| frame.transform_vector3(DVec3::Y * *c);
+        let rim: Vec<DVec3> = self.chord.iter().map(edge).collect();
+        Boundary::pillow(&face(1.0), &face(-1.0), &rim, &Options::default())
     }
-
-    fn mirrored(self, x: f64) -> Self {
-        let turn = |[a, b]: [f64; 2]| [a * x, b];
-        Self { at: turn(self.at), half: turn(self.half), ..self }
-    }
-}
-
-/// How much nearer the front edge than the middle a fin is thickest: 0 is an ellipse.
-const FULLNESS: f64 = 0.5;
-
-const FLUKES: [Section; 4] = [
-    Section::new([-74.0, 2.0], [163.0, 163.0], [0.0, 0.0]),
-    Section::new([-25.0, 4.5], [122.0, 152.0], [0.0, 3.6]),
-    Section::new([25.0, 4.5], [122.0, 152.0], [0.0, 3.6]),
-    Section::new([74.0, 2.0], [163.0, 163.0], [0.0, 0.0]),
-];
-
-const DORSAL: [Section; 4] = [
-    Section::new([0.0, 14.0], [-30.0, 36.0], [0.0, 0.0]),
-    Section::new([0.0, 36.0], [-8.0, 31.0], [4.2, 0.0]),
-    Section::new([0.0, 52.0], [14.0, 34.0], [3.0, 0.0]),
-    Section::new([0.0, 65.0], [46.0, 46.0], [0.0, 0.0]),
-];
-
-const SIDE: [Section; 4] = [
-    Section::new([12.0, -8.0], [-96.0, -58.0], [0.0, 0.0]),
-    Section::new([31.0, -22.0], [-84.0, -54.0], [2.1, 3.1]),
-    Section::new([49.0, -34.0], [-64.0, -41.0], [1.6, 2.4]),
-    Section::new([64.0, -42.0], [-24.0, -24.0], [0.0, 0.0]),
-];
-
-fn fin(sections: &[Section; 4]) -> Boundary {
-    Boundary::new(sections.map(|s| {
-        let half = dvec3(s.half[0], 0.0, s.half[1]);
-        let chord = DVec3::Y * (s.back - s.front) / 2.0;
-        let mean = dvec3(s.at[0], (s.front + s.back) / 2.0, s.at[1]);
-        Curve::Terms { mean, terms: vec![[chord, half], [DVec3::ZERO, half * -FULLNESS / 2.0]] }
-    }))
 }
