@@ -51,7 +51,7 @@ pub(super) struct Looked {
     pub lam: Vec<f64>,
     /// Feature weights at each point, n a row: those of positions, and the sharp ones.
     w: Vec<f64>,
-    sharp: Vec<f64>,
+    pub sharp: Vec<f64>,
     /// Distances to the features, n a row.
     d: Vec<f64>,
 }

@@ -174,14 +174,18 @@ pub(super) fn locals(
         let inner = inners.first().copied().unwrap_or(Inner::Auto);
         return Ok(vec![measured(&looked.g, &h.lam, &[], inner)]);
     }
-    h.features
-        .iter()
-        .zip(inners)
-        .map(|(f, &inner)| {
-            let at: Vec<DVec3> = cube(FEATURE_SIDE).map(|q| f.element.to_world(q)).collect();
-            Ok(measured(&look(h, &at, job)?.g, &f.lam, &sizes(f), inner))
-        })
-        .collect()
+    let all = rows(h, job)?;
+    let each = h.features.iter().zip(inners).zip(&all);
+    Ok(each.map(|((f, &inner), rows)| measured(rows, &f.lam, &sizes(f), inner)).collect())
+}
+
+/// Values of the shapes at the samples of each feature, a row a sample.
+pub(super) fn rows(h: &Hybrid, job: &dyn Job) -> Result<Vec<Vec<f64>>, Cancelled> {
+    let one = |f: &Placed| {
+        let at: Vec<DVec3> = cube(FEATURE_SIDE).map(|q| f.element.to_world(q)).collect();
+        Ok(look(h, &at, job)?.g)
+    };
+    h.features.iter().map(one).collect()
 }
 
 /// Chooses what the user left open of the space-time blend.

@@ -13,8 +13,10 @@ mod metamorphosis;
 mod moving;
 mod plan;
 mod space_time;
+mod tune;
 
 pub use moving::Moment;
+pub use tune::{Choice, Outlook, Style, Tuning, tune};
 pub use plan::{Blend, Course, Feature, Form, Frames, Inner, MorphError, Part, Plan, SpaceTime};
 
 use crate::field::Shared;
