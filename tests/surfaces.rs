@@ -26,7 +26,7 @@ fn a_dolphin_is_one_solid() {
     let inside = Winding::new(&corners(&body));
     for fin in 1..5 {
         let mesh = solid(fin);
-        let health = check::inspect(&mesh);
+        let health = check::inspect(&mesh, &check::Options::default());
         assert!(health.closed && mesh.volume() > 5000.0, "fin {fin}");
         let (within, without): (Vec<_>, Vec<_>) =
             mesh.points.iter().partition(|p| inside.exact(**p) > 0.5);

@@ -180,7 +180,7 @@ impl Convert {
 }
 
 /// A note without the name that only this command gave.
-fn unnamed(note: &str) -> &str {
+pub fn unnamed(note: &str) -> &str {
     note.strip_prefix("input: ").unwrap_or(note)
 }
 

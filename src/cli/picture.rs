@@ -1,7 +1,9 @@
 //! `picture`: one mesh drawn, or a sheet of many.
 
 use super::check::{CheckReading, assumed, load};
+use super::convert::{plain, unnamed};
 use super::failure::Failure;
+use super::inputs::{self, Is};
 use super::watch::Watch;
 use clap::Args;
 use fieldgraft::job::{self, Job};
@@ -10,13 +12,16 @@ use fieldgraft::num::Aabb;
 use fieldgraft::picture::{
     Cell, Image, LARGEST, Layout, PictureError, Style, View, render, save_png, sheet,
 };
+use fieldgraft::recipe::{GridEntry, ShapeEntry};
+use fieldgraft::scene::Single;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
 /// What to draw.
 #[derive(Args)]
 pub struct Picture {
-    /// The meshes: OBJ, STL, PLY, GLB or glTF; `-` leaves a place on a sheet free
+    /// The meshes: OBJ, STL, PLY, GLB or glTF, or solids and surfaces (`.toml`); `-` leaves a place on a
+    /// sheet free
     #[arg(required = true, value_name = "MESH")]
     meshes: Vec<PathBuf>,
     /// The picture: PNG
@@ -46,6 +51,12 @@ pub struct Picture {
     /// Draw all meshes of a sheet at one scale
     #[arg(long)]
     same_scale: bool,
+    /// Thickness of curves
+    #[arg(long, value_name = "MM")]
+    thickness: Option<f64>,
+    /// Draw surfaces that move at this time in [0, 1]; by default 0.5
+    #[arg(long, value_name = "T")]
+    at: Option<f64>,
     #[command(flatten)]
     reading: CheckReading,
     /// Overwrite what is there
@@ -99,6 +110,10 @@ impl Picture {
                 meshes.push(None);
                 continue;
             }
+            if inputs::is_text(file) {
+                meshes.push(Some(self.text(file, entry, watch)?));
+                continue;
+            }
             let loaded = load(file, &entry)?;
             watch.say(&assumed(file, &loaded));
             meshes.push(Some(loaded.mesh));
@@ -113,6 +128,19 @@ impl Picture {
         };
         job::check(watch)?;
         Ok(save_png(&self.output, &image, self.force)?)
+    }
+
+    /// The triangles of a solid or surface file; a surface is drawn without its thickness, a curve
+    /// with it.
+    fn text(&self, file: &Path, entry: ShapeEntry, watch: &Watch) -> Result<TriMesh, Failure> {
+        let mut entry = ShapeEntry { mesh: None, ..entry };
+        if inputs::source(file, &mut entry) == Is::Surface {
+            (entry.thickness, entry.at) = (self.thickness, self.at);
+        }
+        let single = Single::outline("input", entry, &GridEntry::default(), Path::new(""));
+        let single = single.map_err(plain)?;
+        single.notes().iter().for_each(|n| watch.say(unnamed(n)));
+        single.shells().map_err(plain)
     }
 
     /// How mesh `i` is drawn.

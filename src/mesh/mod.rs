@@ -40,7 +40,7 @@ pub use found::Found;
 pub use frame::{Assume, Unit, UnknownWord, Up};
 pub use read::{Loaded, read};
 pub use weld::{snap, weld};
-pub use write::{check_output, write};
+pub use write::{FlipBook, Motion, check_output, write, write_motion};
 
 use crate::num::Aabb;
 use glam::{DAffine3, DVec3};

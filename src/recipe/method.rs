@@ -5,7 +5,7 @@ use super::source::join;
 use super::time::Times;
 use super::features::FeatureMorph;
 use super::value::{Auto, PlainOr};
-use super::{Problem, Recipe, did_you_mean};
+use super::{Problem, Recipe, SurfaceMethod, did_you_mean};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -75,9 +75,36 @@ pub enum MethodEntry {
     Graft,
     /// Features of any number of shapes (paper 001, eq. 8).
     Group,
-    /// Graft or group where there are features, else space-time.
+    /// Graft or group where there are features, else space-time; one shape alone as it is.
     #[default]
     Auto,
+    /// Two surface files of kind pde: their curves are blended and the equation solved again.
+    PdeBoundary,
+    /// Two surface files of kind pde: the modes of one fade out, those of the other in.
+    PdeModes,
+    /// Two surface files of kind pde: the curves at the ends are blended, modes elsewhere.
+    PdeCombined,
+    /// Two surface files of kind pde: the spines are blended, then what stands on them.
+    PdeSpine,
+    /// Two surface files of kind nurbs: the mean of the points.
+    NurbsLinear,
+    /// Two surface files of kind nurbs: the mean of the points by their masses.
+    NurbsWeighted,
+}
+
+impl MethodEntry {
+    /// The morph of two surface files that this method is, if it is one.
+    pub fn surface(self) -> Option<SurfaceMethod> {
+        Some(match self {
+            Self::PdeBoundary => SurfaceMethod::PdeBoundary,
+            Self::PdeModes => SurfaceMethod::PdeModes,
+            Self::PdeCombined => SurfaceMethod::PdeCombined,
+            Self::PdeSpine => SurfaceMethod::PdeSpine,
+            Self::NurbsLinear => SurfaceMethod::NurbsLinear,
+            Self::NurbsWeighted => SurfaceMethod::NurbsWeighted,
+            _ => return None,
+        })
+    }
 }
 
 /// What the features' weights blend.

@@ -149,19 +149,20 @@ impl Source {
         1 + self.text.bytes().take(offset).filter(|&b| b == b'\n').count()
     }
 
-    /// The key with the smallest span that holds the byte.
-    fn key_at(&self, offset: usize) -> String {
-        let holds = self.places.iter().filter(|(_, r)| r.contains(&offset));
+    /// The key with the smallest span that holds all of these bytes.
+    fn key_at(&self, span: &Range<usize>) -> String {
+        let holds = |r: &Range<usize>| r.contains(&span.start) && span.end <= r.end;
+        let holds = self.places.iter().filter(|(_, r)| holds(r));
         // of equal spans the last is the deepest
         let key = holds.rev().min_by_key(|(_, r)| r.len()).map(|(k, _)| k.clone());
         key.unwrap_or_default()
     }
 
-    fn fail(&self, offset: Option<usize>, message: &str) -> RecipeError {
-        let at = offset.map(|o| self.key_at(o)).unwrap_or_default();
+    fn fail(&self, span: Option<Range<usize>>, message: &str) -> RecipeError {
+        let at = span.as_ref().map(|s| self.key_at(s)).unwrap_or_default();
         RecipeError {
             file: self.file.clone(),
-            line: offset.map(|o| self.line_at(o)),
+            line: span.map(|s| self.line_at(s.start)),
             at,
             why: explain(message),
         }
@@ -169,10 +170,19 @@ impl Source {
 
     fn read_toml<T: DeserializeOwned>(&mut self) -> Result<T, RecipeError> {
         let text = self.text.clone();
-        let table =
-            DeTable::parse(&text).map_err(|e| self.fail(e.span().map(|s| s.start), e.message()))?;
+        let table = DeTable::parse(&text).map_err(|e| self.fail(e.span(), e.message()))?;
         self.index_table("", table.get_ref(), 0);
-        toml::from_str(&text).map_err(|e| self.fail(e.span().map(|s| s.start), e.message()))
+        toml::from_str(&text).map_err(|e| {
+            let mut fault = self.fail(e.span(), e.message());
+            // of the top table only its first key is pointed at, which is not to blame
+            let inner = e
+                .span()
+                .is_some_and(|s| text.get(s.start..).unwrap_or_default().starts_with(['[', '{']));
+            if e.message().starts_with("missing field") && !inner {
+                fault.at.clear();
+            }
+            fault
+        })
     }
 
     fn index_table(&mut self, above: &str, table: &DeTable<'_>, depth: usize) {
@@ -209,7 +219,8 @@ impl Source {
             let start = text.split_inclusive('\n').take(e.line().saturating_sub(1));
             let offset = start.map(str::len).sum::<usize>() + e.column();
             // the column is that of the last byte read, counted from 1, often just past a value
-            let mut fault = self.fail(Some(offset.saturating_sub(2)), message);
+            let last = offset.saturating_sub(2);
+            let mut fault = self.fail(Some(last..last + 1), message);
             fault.line = Some(e.line());
             fault
         })

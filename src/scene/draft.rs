@@ -1,7 +1,7 @@
 //! Shapes read and placed: enough to know how large the work will be.
 
-use super::live::{self, Placed, Stop};
-use super::variant::{Variant, asked};
+use super::live::{self, Placed, Stop, Want};
+use super::variant::{Parts, Variant, asked};
 use super::{Scene, SceneError, mesh_element, plan};
 use crate::grid::Lattice;
 use crate::job::{self, Job};
@@ -54,7 +54,8 @@ impl Draft {
                 }
                 PlainOr::Plain(_) => None,
             };
-            let shape = live::load(name, entry, beside, box_, &uses[name].times, &at);
+            let want = Want { like: box_, times: &uses[name].times, solid: true };
+            let shape = live::load(name, entry, beside, &want, &at);
             placed.push(shape.map_err(|p| source.locate(p))?);
         }
         placed.sort_by(|a, b| a.name.cmp(&b.name));
@@ -121,12 +122,14 @@ impl Draft {
             notes.extend(found);
             shapes.push(shape);
         }
+        let parts = Parts { recipe: &recipe, beside: &beside, shapes: &shapes, meshes: &meshes, step };
         let variants = recipe
             .variants()
             .iter()
-            .map(|(at, entry)| Variant::new(entry, at, &shapes, &meshes, &recipe))
+            .map(|(at, entry)| Variant::new(entry, at, &parts))
             .collect::<Result<Vec<_>, _>>()
             .map_err(locate)?;
+        notes.extend(variants.iter().flat_map(|v| v.notes.clone()));
         let domain = variants.iter().fold(Aabb::EMPTY, |b, v| b.hull(v.domain()));
         let lattice = Lattice::covering(&domain.grow(padding), step);
         fits(&lattice).map_err(locate)?;
@@ -141,6 +144,8 @@ pub(super) struct Use {
     pub times: Vec<f64>,
     /// Whether some variant is this shape alone.
     pub alone: bool,
+    /// Whether some variant looks its field up many times.
+    pub morphs: bool,
 }
 
 /// The shapes that some variant, or the place of one of them, needs, by name.
@@ -148,11 +153,12 @@ fn uses(recipe: &Recipe) -> Result<BTreeMap<String, Use>, Problem> {
     let mut uses: BTreeMap<String, Use> = BTreeMap::new();
     for (at, entry) in recipe.variants() {
         let of = plan::shape_names(&entry, recipe, &at)?;
-        plan::method(&entry, of.len(), recipe, &at)?;
+        plan::method(&entry, &of, recipe, &at)?;
         let alone = of.len() == 1;
         for name in of {
             let known = uses.entry(name.clone()).or_default();
             known.alone |= alone;
+            known.morphs |= !alone;
             known.add(&asked(&entry));
             if let PlainOr::Table(PlaceLike { like }) = &recipe.shapes[&name].place {
                 uses.entry(like.clone()).or_default().add(&asked(&entry));

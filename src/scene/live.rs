@@ -8,7 +8,6 @@ use super::skinned::{How, Skinned, SkinnedError};
 use super::{Input, digest, surface};
 use crate::field::mesh::{MeshField, MeshFieldError, MeshOptions, Sign, Thicken, Which};
 use crate::field::sampled::Sampled;
-use crate::field::skin::SkinError;
 use crate::field::solid::Assembly;
 use crate::field::{Field, Shared};
 use crate::job::{Cancelled, Job};
@@ -45,7 +44,7 @@ pub struct LiveShape {
     pub name: String,
     /// The field that is looked up: its sampled form; of a shape that moves, at its first time.
     pub field: Shared,
-    /// Volume of the inside, mm³.
+    /// Volume of the inside, mm³; not a number where it was not wanted: of a shape alone.
     pub volume: f64,
     /// The box round it, mm; of a shape that moves, at all times asked for.
     pub bounds: Aabb,
@@ -66,14 +65,22 @@ impl LiveShape {
     }
 }
 
-/// Reads and places a shape; `at` is its key, `like` the box of the shape it stands like, `times`
-/// those at which it is wanted.
+/// What is wanted of a shape.
+pub(super) struct Want<'a> {
+    /// The box of the shape it stands like.
+    pub like: Option<Aabb>,
+    /// Times at which it is wanted.
+    pub times: &'a [f64],
+    /// Whether it must enclose something.
+    pub solid: bool,
+}
+
+/// Reads and places a shape; `at` is its key.
 pub(super) fn load(
     name: &str,
     entry: &ShapeEntry,
     beside: &Path,
-    like: Option<Aabb>,
-    times: &[f64],
+    want: &Want<'_>,
     at: &str,
 ) -> Result<Placed, Problem> {
     let read = match (&entry.mesh, &entry.solid, &entry.surface) {
@@ -82,14 +89,14 @@ pub(super) fn load(
         (None, Some(PlainOr::Table(solid)), _) => {
             Read::new(Body::solid(solid, &format!("{at}.solid"))?, "solid".to_owned())
         }
-        (None, None, Some(file)) => surface_file(entry, &beside.join(file), at)?,
+        (None, None, Some(file)) => surface_file(entry, &beside.join(file), want.solid, at)?,
         (None, None, None) => {
             return Err(Problem::new(at, "no source: give `mesh`, `solid` or `surface`"));
         }
     };
     let Read { body, story, warnings, inputs } = read;
-    let body = place(body, entry, like, at)?;
-    let (bounds, stands) = (body.bounds_at(times), body.bounds());
+    let body = place(body, entry, want.like, at)?;
+    let (bounds, stands) = (body.bounds_at(want.times), body.bounds());
     if bounds.is_empty() || !bounds.is_finite() {
         return Err(Problem::new(at, "the shape is empty: it has no triangle with a size"));
     }
@@ -151,7 +158,12 @@ fn solid_file(path: &Path, at: &str) -> Result<Read, Problem> {
     Ok(Read { inputs: vec![input], ..Read::new(body, story) })
 }
 
-fn surface_file(entry: &ShapeEntry, path: &Path, at: &str) -> Result<Read, Problem> {
+fn surface_file(
+    entry: &ShapeEntry,
+    path: &Path,
+    solid: bool,
+    at: &str,
+) -> Result<Read, Problem> {
     let key = format!("{at}.surface");
     let fail = |why: String| Problem::new(&key, why);
     let file = surface::open(path).map_err(|e| fail(e.to_string()))?;
@@ -163,14 +175,14 @@ fn surface_file(entry: &ShapeEntry, path: &Path, at: &str) -> Result<Read, Probl
         },
         ..Similarity::NONE
     };
-    let named = |e: SkinnedError| match e {
-        SkinnedError::Skin(SkinError::Sheet(_)) => Problem::new(
-            format!("{at}.thickness"),
-            format!("{}: {e} (`thickness`, in mm)", path.display()),
-        ),
-        e => fail(format!("{}: {e}", path.display())),
-    };
+    let named = |e: SkinnedError| fail(format!("{}: {e}", path.display()));
     let skinned = Skinned::new(file.object, How::of(entry), by, entry.at).map_err(named)?;
+    if solid {
+        skinned.encloses().map_err(|e| {
+            let why = format!("{}: {e} (`thickness`, in mm)", path.display());
+            Problem::new(format!("{at}.thickness"), why)
+        })?;
+    }
     let story = format!("{}, {}", path.display(), file.story);
     Ok(Read { body: Body::Surface(skinned), story, warnings: file.warnings, inputs: file.inputs })
 }
@@ -208,7 +220,8 @@ pub(super) fn exact(
                 SkinnedError::Cancelled(c) => Stop::Cancelled(c),
                 e => Problem::new(join("shapes", &placed.name), e.to_string()).into(),
             })?;
-            Ok((field, vec![format!("{}: {}", placed.name, sides.story())]))
+            let told = [Some(sides.story()), skinned.too_thin(step)].into_iter().flatten();
+            Ok((field, told.map(|n| format!("{}: {n}", placed.name)).collect()))
         }
         Body::Solid(parts) => {
             let at = join("shapes", &placed.name);
@@ -246,16 +259,21 @@ pub(super) fn make(
     let moves = surface.as_ref().filter(|s| s.moves());
     if let Some(moves) = moves {
         let moving = Arc::new(Moving::new(&name, moves.clone(), step));
-        let (field, volume) = first(&moving, &purpose.times, job)?;
+        let notes = moves.too_thin(step).map(|n| format!("{name}: {n}")).into_iter().collect();
+        let (field, volume) = first(&moving, &purpose.times, purpose.morphs, job)?;
         let seconds = [start.elapsed().as_secs_f64(), 0.0];
         let moving = Some(moving);
         let shape =
             LiveShape { name, field, volume, bounds, seconds, exact: None, surface, moving };
-        return Ok((shape, vec![]));
+        return Ok((shape, notes));
     }
     let (exact, notes) = exact(placed, entry, 0.5, step, job)?;
     let made = start.elapsed().as_secs_f64();
-    let (field, volume) = sampled(&*exact, step, job)?;
+    let (field, volume) = if purpose.morphs || !purpose.alone {
+        sampled(&*exact, step, job)?
+    } else {
+        (exact.clone(), f64::NAN)
+    };
     let seconds = [made, start.elapsed().as_secs_f64() - made];
     let exact = purpose.alone.then_some(exact);
     let shape = LiveShape { name, field, volume, bounds, seconds, exact, surface, moving: None };
@@ -263,11 +281,17 @@ pub(super) fn make(
 }
 
 /// What moves at the first of the times at which it has a field.
-fn first(moving: &Moving, times: &[f64], job: &dyn Job) -> Result<(Shared, f64), Stop> {
+fn first(
+    moving: &Moving,
+    times: &[f64],
+    morphs: bool,
+    job: &dyn Job,
+) -> Result<(Shared, f64), Stop> {
     let mut why = None;
     for &t in times {
         match moving.at(t, job) {
-            Ok(moment) => return Ok(moment.sampled(job)?),
+            Ok(moment) if morphs => return Ok(moment.sampled(job)?),
+            Ok(moment) => return Ok((moment.exact.clone(), f64::NAN)),
             Err(MorphError::Cancelled(c)) => return Err(c.into()),
             Err(e) => why = why.or(Some(e)),
         }

@@ -10,6 +10,7 @@ mod elements;
 mod live;
 mod mesh_element;
 mod moving;
+mod pair;
 mod place;
 mod plan;
 mod rows;

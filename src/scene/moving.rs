@@ -5,6 +5,7 @@ use super::skinned::{Skinned, SkinnedError};
 use crate::field::Shared;
 use crate::job::{Cancelled, Job};
 use crate::morph::MorphError;
+use crate::num::Aabb;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// A shape that has another field at each t.
@@ -34,6 +35,11 @@ impl Moving {
     /// The shape's name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The box at the given times, mm.
+    pub fn bounds_at(&self, times: &[f64]) -> Aabb {
+        self.shape.bounds_at(times)
     }
 
     /// The shape at `t`.

@@ -7,7 +7,7 @@ use crate::element::{Element, align};
 use crate::morph::{Blend, Form, Frames, Inner, Part, Plan, SpaceTime};
 use crate::recipe::{
     BlendEntry, ElementShape, FeatureEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry,
-    OneOrMany, PlainOr, Problem, Recipe, SpaceTimeEntry, WeightingEntry, WeightingKind,
+    OneOrMany, PlainOr, Problem, Recipe, SpaceTimeEntry, SurfaceMethod, WeightingEntry, WeightingKind,
 };
 use crate::warp::Deform;
 use crate::weight::Weighting;
@@ -44,10 +44,11 @@ pub(super) fn shape_names(
 /// The method meant: `auto` decided, and what it needs is there.
 pub(super) fn method(
     entry: &MorphEntry,
-    shapes: usize,
+    names: &[String],
     recipe: &Recipe,
     at: &str,
 ) -> Result<MethodEntry, Problem> {
+    let shapes = names.len();
     let asked = entry.method.unwrap_or_default();
     let featured = !recipe.features.is_empty();
     let needs =
@@ -56,6 +57,9 @@ pub(super) fn method(
     if shapes == 1 && asked != MethodEntry::Auto {
         let why = "this morph is of one shape, which is made as it is; remove the method";
         return Err(Problem::new(at, why));
+    }
+    if let Some(method) = asked.surface() {
+        return surfaces(names, recipe, method, &at).map(|()| asked);
     }
     if needs && !featured {
         let why = "this method needs features; add [[features]], or use \"space-time\"";
@@ -71,6 +75,24 @@ pub(super) fn method(
         MethodEntry::Auto if shapes == 2 => Ok(MethodEntry::Graft),
         MethodEntry::Auto => Ok(MethodEntry::Group),
         other => Ok(other),
+    }
+}
+
+/// Whether a method of two surface files has them.
+fn surfaces(
+    names: &[String],
+    recipe: &Recipe,
+    method: SurfaceMethod,
+    at: &str,
+) -> Result<(), Problem> {
+    let (word, kind) = (method.word(), method.of().word());
+    let needs = format!("{word} morphs two surface files of kind {kind}");
+    if names.len() != 2 {
+        return Err(Problem::new(at, format!("{needs}, here are {} shapes", names.len())));
+    }
+    match names.iter().find(|n| recipe.shapes[*n].surface.is_none()) {
+        Some(name) => Err(Problem::new(at, format!("{needs}; `{name}` is no surface file"))),
+        None => Ok(()),
     }
 }
 

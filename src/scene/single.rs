@@ -1,7 +1,7 @@
 //! One shape on its own, as `convert` needs it.
 
 use super::draft::cells;
-use super::live::{self, Stop};
+use super::live::{self, Stop, Want};
 use super::{Input, SceneError};
 use crate::field::Shared;
 use crate::grid::Lattice;
@@ -34,6 +34,30 @@ impl Single {
         grid: &GridEntry,
         beside: &Path,
     ) -> Result<Self, SceneError> {
+        Self::read(name, entry, grid, beside, true)
+    }
+
+    /// As [`Single::open`], for its triangles alone: a surface may lack the thickness that its field
+    /// would need.
+    ///
+    /// # Errors
+    /// As [`Single::open`].
+    pub fn outline(
+        name: &str,
+        entry: ShapeEntry,
+        grid: &GridEntry,
+        beside: &Path,
+    ) -> Result<Self, SceneError> {
+        Self::read(name, entry, grid, beside, false)
+    }
+
+    fn read(
+        name: &str,
+        entry: ShapeEntry,
+        grid: &GridEntry,
+        beside: &Path,
+        solid: bool,
+    ) -> Result<Self, SceneError> {
         let source = Source::unwritten();
         let shapes = BTreeMap::from([(name.to_owned(), entry.clone())]);
         let recipe = Recipe {
@@ -46,7 +70,8 @@ impl Single {
         recipe.validate().map_err(locate)?;
         let at = join("shapes", name);
         let t = entry.at.unwrap_or(0.5);
-        let placed = live::load(name, &entry, beside, None, &[t], &at).map_err(locate)?;
+        let want = Want { like: None, times: &[t], solid };
+        let placed = live::load(name, &entry, beside, &want, &at).map_err(locate)?;
         let lattice = cells(grid, placed.bounds, thickness(&entry)).map_err(locate)?;
         Ok(Self { placed, entry, t, lattice })
     }

@@ -27,6 +27,9 @@ const PLANAR: f64 = 1e-6;
 /// Chord tolerance of what is made, as a part of a cell.
 const FINE: f64 = 0.1;
 
+/// A shell thinner than this many cells has holes.
+const THINNEST: f64 = 2.0;
+
 /// Why a shape of a surface file has no field.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SkinnedError {
@@ -147,12 +150,12 @@ impl Skinned {
         // a motion may fail at some times; those frames will say so
         match first {
             Some(e) if all.outlines.is_empty() => Err(e.into()),
-            _ => all.check().map(|()| all),
+            _ => Ok(all),
         }
     }
 
     /// Refuses sheets and curves without a thickness.
-    fn check(&self) -> Result<(), SkinnedError> {
+    pub fn encloses(&self) -> Result<(), SkinnedError> {
         if self.how.skin.thickness.is_some() {
             return Ok(());
         }
@@ -168,11 +171,6 @@ impl Skinned {
             }
             Still::Surface(_) => Ok(()),
         }
-    }
-
-    /// What it is.
-    pub fn object(&self) -> &Parametric {
-        &self.object
     }
 
     /// Where it stands: the similarity from the file's space to ours.
@@ -263,6 +261,18 @@ impl Skinned {
         };
         mesh.transform(&by.affine());
         Ok(mesh)
+    }
+
+    /// What is to be said about cells of `step` mm.
+    pub fn too_thin(&self, step: f64) -> Option<String> {
+        let mm = self.how.skin.thickness?;
+        let shell = self.outlines.iter().any(|(_, o)| o.room != Room::None);
+        (shell && mm < THINNEST * step).then(|| {
+            format!(
+                "the thickness of {mm} mm is less than {THINNEST} cells of {step:.3} mm: expect \
+                 holes; use smaller cells, or more thickness"
+            )
+        })
     }
 
     /// The solid at `t` for cells of `step` mm, and what the surface is.
@@ -367,20 +377,17 @@ fn diagonal(b: &Aabb) -> Result<f64, SurfaceError> {
     Err(SurfaceError::new("surface", format!("has no size: its box has a diagonal of {d}")))
 }
 
-/// Whether the curve is closed and stays in a plane.
+/// Whether the curve is closed and stays in a plane; a curve that has shrunk to a line does.
 fn planar(curve: &dyn Curve) -> bool {
-    if !curve.closed() {
-        return false;
-    }
-    let Ok(Ok(ring)) = long(curve).map(|d| polyline(curve, ROUGH * d)) else {
-        return false;
+    let ring = match long(curve).map(|d| polyline(curve, ROUGH * d)) {
+        Ok(Ok(ring)) if curve.closed() => ring,
+        _ => return false,
     };
     let o = ring[0];
     let normal: DVec3 = ring.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum();
     let size = Aabb::of(ring.iter().copied()).size().length();
-    normal
-        .try_normalize()
-        .is_some_and(|n| ring.iter().all(|p| (p - o).dot(n).abs() <= PLANAR * size))
+    let normal = normal.try_normalize().filter(|_| normal.length() > PLANAR * size * size);
+    normal.is_none_or(|n| ring.iter().all(|p| (p - o).dot(n).abs() <= PLANAR * size))
 }
 
 impl Similarity {
@@ -389,3 +396,6 @@ impl Similarity {
         DAffine3::from_scale_rotation_translation(DVec3::splat(self.scale), self.turn, self.shift)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -89,7 +89,12 @@ fn methods_are_chosen_by_what_is_there() {
 fn what_cannot_be_is_told_by_its_key() {
     for (rest, expected) in [
         ("", "morph: which shapes?"),
-        ("[morph]\namong = [\"a\"]", "morph.among: 1 shape"),
+        ("[morph]\namong = []", "morph.among: no shape"),
+        (
+            "[morph]\namong = [\"a\"]\nmethod = \"linear\"",
+            "morph.method: this morph is of one shape",
+        ),
+        ("[morph]\namong = [\"a\"]\nt = [0, 1]", "morph.t: nothing depends on t: no shape moves"),
         ("[morph]\namong = [\"a\", \"c\", \"a\"]", "morph.among: `a` is there twice"),
         ("[morph]\nmethod = \"graft\"\namong = [\"a\", \"b\", \"c\"]", "here are 3; use \"group\""),
         (

@@ -2,7 +2,7 @@
 
 use super::live::LiveShape;
 use super::moving::Moving;
-use super::plan;
+use super::{pair, plan};
 use crate::element::Element;
 use crate::field::Shared;
 use crate::job::{Job, Quiet};
@@ -10,6 +10,7 @@ use crate::morph::{Course, Frames, Moment, Morph, MorphError, Plan, build};
 use crate::num::Aabb;
 use crate::recipe::{MethodEntry, MorphEntry, Problem, Recipe};
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 
 /// A hybrid to make.
@@ -27,6 +28,20 @@ pub struct Variant {
     way: Way,
     /// What its results need, mm.
     domain: Aabb,
+    /// What was found on the way.
+    pub(super) notes: Vec<String>,
+}
+
+/// What variants are made from.
+pub(super) struct Parts<'a> {
+    pub recipe: &'a Recipe,
+    /// The folder paths are relative to.
+    pub beside: &'a Path,
+    pub shapes: &'a [LiveShape],
+    /// The meshes of elements, by their key.
+    pub meshes: &'a BTreeMap<String, Element>,
+    /// Side of a cell, mm.
+    pub step: f64,
 }
 
 /// A shape of a morph.
@@ -43,24 +58,27 @@ enum Way {
     Still(Shared),
     /// One shape that moves.
     Moving(Arc<Moving>),
+    /// A surface that moves from one shape to the other.
+    Pair(Arc<Moving>),
 }
 
 impl Variant {
-    pub(super) fn new(
-        entry: &MorphEntry,
-        at: &str,
-        shapes: &[LiveShape],
-        meshes: &BTreeMap<String, Element>,
-        recipe: &Recipe,
-    ) -> Result<Self, Problem> {
+    pub(super) fn new(entry: &MorphEntry, at: &str, parts: &Parts<'_>) -> Result<Self, Problem> {
+        let Parts { recipe, shapes, .. } = parts;
         let names = plan::shape_names(entry, recipe, at)?;
-        let method = plan::method(entry, names.len(), recipe, at)?;
+        let method = plan::method(entry, &names, recipe, at)?;
         let live: Vec<&LiveShape> =
             names.iter().filter_map(|n| shapes.iter().find(|s| s.name == *n)).collect();
-        let way = match live[..] {
-            [shape] => alone(shape),
+        let mut notes = vec![];
+        let way = match (live.as_slice(), method.surface()) {
+            ([shape], _) => alone(shape),
+            ([a, b], Some(method)) => {
+                let (moving, found) = pair::moving([*a, *b], method, parts, at)?;
+                notes = found;
+                Way::Pair(Arc::new(moving))
+            }
             _ => {
-                let plan = plan::plan(entry, method, &live, meshes, recipe, at)?;
+                let plan = plan::plan(entry, method, &live, parts.meshes, recipe, at)?;
                 build(plan.clone()).map_err(|e| Problem::new(at, e.to_string()))?;
                 let dominant = entry.frames.as_deref() == Some("dominant");
                 Way::Plan { plan: Box::new(plan), dominant }
@@ -68,17 +86,17 @@ impl Variant {
         };
         let loose = matches!(method, MethodEntry::Graft | MethodEntry::Group);
         let moves = way.moves() || live.iter().any(|s| s.moves());
+        let times = times(entry, moves, at)?;
+        let member = |s: &&LiveShape| Member { volume: s.volume, moving: s.moving.clone() };
         Ok(Self {
             name: entry.name.clone(),
             method,
-            times: times(entry, moves, at)?,
             crumbs: recipe.output.crumbs.unwrap_or(if loose { 0.02 } else { 0.0 }),
-            domain: domain(&way, &live),
-            shapes: live
-                .iter()
-                .map(|s| Member { volume: s.volume, moving: s.moving.clone() })
-                .collect(),
+            domain: domain(&way, &live, &times),
+            times,
+            shapes: live.iter().map(member).collect(),
             way,
+            notes,
         })
     }
 
@@ -90,7 +108,7 @@ impl Variant {
     pub fn morph(&self, t: f64, job: &dyn Job) -> Result<Box<dyn Morph>, MorphError> {
         let (plan, dominant) = match &self.way {
             Way::Still(field) => return Ok(Box::new(Moment(field.clone()))),
-            Way::Moving(shape) => return Ok(Box::new(Moment(shape.at(t, job)?.exact.clone()))),
+            Way::Moving(shape) | Way::Pair(shape) => return Ok(Box::new(Moment(shape.at(t, job)?.exact.clone()))),
             Way::Plan { plan, dominant } => (plan, *dominant),
         };
         let mut plan = Plan::clone(plan);
@@ -113,8 +131,12 @@ impl Variant {
     /// The weighted mean of the shapes' volumes at `t`, mm³; with features, the mean over them. Not a
     /// number where a shape has no field, and for a shape alone, which has nothing to be compared with.
     pub fn mean_volume(&self, t: f64) -> f64 {
-        let Way::Plan { plan, .. } = &self.way else { return f64::NAN };
         let volumes: Vec<f64> = self.shapes.iter().map(|s| s.volume_at(t)).collect();
+        let plan = match (&self.way, volumes.as_slice()) {
+            (Way::Plan { plan, .. }, _) => plan,
+            (Way::Pair(_), [a, b]) => return (1.0 - t) * a + t * b,
+            _ => return f64::NAN,
+        };
         let mean = |c: &Course| -> f64 { c.at(t).iter().zip(&volumes).map(|(w, v)| w * v).sum() };
         if plan.features.is_empty() {
             return mean(&plan.course);
@@ -139,7 +161,7 @@ impl Way {
         let pair = |c: &Course| matches!(c, Course::Pair(_));
         match self {
             Self::Still(_) => false,
-            Self::Moving(_) => true,
+            Self::Moving(_) | Self::Pair(_) => true,
             Self::Plan { plan, .. } if plan.features.is_empty() => pair(&plan.course),
             Self::Plan { plan, .. } => {
                 plan.features.iter().any(|f| pair(&f.morph) || pair(&f.deform))
@@ -157,8 +179,9 @@ fn alone(shape: &LiveShape) -> Way {
 }
 
 /// The boxes of the fields, and those of what moves, grown by what the features add.
-fn domain(way: &Way, live: &[&LiveShape]) -> Aabb {
+fn domain(way: &Way, live: &[&LiveShape], times: &[f64]) -> Aabb {
     let add = match way {
+        Way::Pair(surface) => return surface.bounds_at(times),
         Way::Plan { plan, .. } => plan.features.iter().fold(0.0, |o: f64, f| o.max(f.offset)),
         _ => 0.0,
     };

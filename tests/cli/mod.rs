@@ -8,5 +8,7 @@ mod errors;
 mod make;
 /// The recipes and solids that ship with the crate.
 mod shipped;
+/// Surface files as recipes, and as shapes among others.
+mod surfaces;
 /// `schema`, `completions`, `man`.
 mod texts;

@@ -1,4 +1,5 @@
-//! glTF 2.0, binary and JSON: the triangles of the default scene, node transforms applied.
+//! glTF 2.0, binary and JSON: the triangles of the default scene, node transforms applied. Of an
+//! animation, the moment at which nothing plays.
 //!
 //! Only what carries geometry is deserialised, and every index, count and offset is checked
 //! against the bytes there are. The `gltf` crate's own document is not used: its accessors index
@@ -102,6 +103,9 @@ impl Reader<'_> {
             };
             if std::mem::replace(&mut seen[i], true) {
                 return fault(format!("nodes[{i}]"), "reached twice: nodes must form a tree");
+            }
+            if node.hidden() {
+                continue;
             }
             let here = above * node.transform();
             if let Some(mesh) = node.mesh {

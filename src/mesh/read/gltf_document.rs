@@ -142,6 +142,11 @@ pub(super) fn hint(extension: &str) -> &'static str {
 }
 
 impl Node {
+    /// Whether it is scaled to nothing, as animations do to what is not to be seen.
+    pub fn hidden(&self) -> bool {
+        self.scale.as_deref() == Some(&[0.0; 3])
+    }
+
     pub fn transform(&self) -> DAffine3 {
         if let Some(m) = &self.matrix {
             return DAffine3::from_mat4(DMat4::from_cols_array(m));

@@ -7,6 +7,8 @@ mod stl;
 #[cfg(test)]
 mod tests;
 
+pub use glb::{FlipBook, Motion, write_motion};
+
 use super::{
     TriMesh,
     error::MeshError,
@@ -48,7 +50,7 @@ pub fn write(path: &Path, mesh: &TriMesh, note: &str, force: bool) -> Result<u64
     sound(mesh).map_err(unfaithful)?;
     let bytes = encode(target, mesh, &plain(note)).map_err(unfaithful)?;
     same(&bytes, target, mesh).map_err(unfaithful)?;
-    place(path, &bytes, force)?;
+    place(path, &[&bytes], force)?;
     Ok(bytes.len() as u64)
 }
 
@@ -196,7 +198,7 @@ fn same_welded(soup: &TriMesh, mesh: &TriMesh) -> Result<(), String> {
 }
 
 /// Writes beside the place and renames into it, so that no half file is ever there.
-fn place(path: &Path, bytes: &[u8], force: bool) -> Result<(), MeshError> {
+fn place(path: &Path, parts: &[&[u8]], force: bool) -> Result<(), MeshError> {
     let failed = |cause| MeshError::Io { path: path.into(), doing: "write", cause };
     let mut beside = tempfile::Builder::new();
     beside.prefix(".fieldgraft-").suffix(".part");
@@ -204,7 +206,9 @@ fn place(path: &Path, bytes: &[u8], force: bool) -> Result<(), MeshError> {
     #[cfg(unix)]
     beside.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = beside.tempfile_in(folder(path)).map_err(failed)?;
-    file.write_all(bytes).map_err(failed)?;
+    for part in parts {
+        file.write_all(part).map_err(failed)?;
+    }
     let kept = if force { file.persist(path) } else { file.persist_noclobber(path) };
     match kept {
         Ok(_) => Ok(()),

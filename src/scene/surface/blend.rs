@@ -4,8 +4,8 @@ use super::scaled::scaled;
 use super::{Parametric, SurfaceFile, below, check_scale, plain, problem};
 use crate::recipe::Problem;
 use crate::recipe::surface::{self as entry, Formula, Kind};
-use crate::surface::Motion;
 use crate::surface::blend::{Basis, Blend, BlendSpec, Handles, Side};
+use crate::surface::{Motion, SurfaceError};
 use std::sync::Arc;
 
 pub fn blend(e: &entry::Blend) -> Result<SurfaceFile, Problem> {
@@ -24,7 +24,7 @@ pub fn blend(e: &entry::Blend) -> Result<SurfaceFile, Problem> {
         v: e.v,
         at: [side(&e.at_0, "at-0")?, side(&e.at_1, "at-1")?],
     };
-    let solved = Blend::new(spec).map_err(problem)?;
+    let solved = Blend::new(spec).map_err(|s| as_written(e, s))?;
     let count = solved.functions().len();
     let exact = solved.exact();
     let motion: Arc<dyn Motion> = if e.exact {
@@ -48,6 +48,17 @@ pub fn blend(e: &entry::Blend) -> Result<SurfaceFile, Problem> {
     let object = Parametric::Motion(scaled(motion, e.scale));
     let exact = exact.ok().map(|x| Parametric::Motion(scaled(Arc::new(x), e.scale)));
     Ok(SurfaceFile { exact, ..plain(Kind::Blend, object, story) })
+}
+
+/// A failure of the library by the key that is in the file: it calls a surface at its cut a position
+/// and a tangent.
+fn as_written(e: &entry::Blend, s: SurfaceError) -> Problem {
+    let ends = [(&e.at_0, "at-0"), (&e.at_1, "at-1")];
+    let cut = ends.into_iter().find(|(side, at)| side.surface.is_some() && s.at.starts_with(at));
+    match (cut, s.at.find('[')) {
+        (Some((_, at)), Some(i)) => Problem::new(format!("{at}.surface{}", &s.at[i..]), s.why),
+        _ => problem(s),
+    }
 }
 
 /// One end: position and tangent, or a surface and its cut.
