@@ -25,8 +25,6 @@ mod seat;
 mod slabs;
 mod volume;
 
-#[cfg(test)]
-mod tests;
 
 pub use chair::{Arm, Back, Base, Chair, Column, Leg, Pose, Seat};
 

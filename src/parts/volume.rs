@@ -47,7 +47,12 @@ impl Field for Stood<'_> {
     }
 
     fn support(&self) -> Aabb {
-        self.field.support().grow(self.grow)
+        let own = self.field.support();
+        if !own.is_finite() {
+            return Aabb::ALL;
+        }
+        let image = Aabb::of(own.corners().map(|p| self.stand.point(p)));
+        image.grow(self.grow + 1e-9 * (1.0 + image.radius()))
     }
 }
 

@@ -31,7 +31,19 @@ pub(super) fn save(
     suggestion: &Suggestion,
     force: bool,
 ) -> Result<(), Failure> {
-    let mut cells = Vec::new();
+    let mut all = Vec::new();
+    cells(inputs, suggestion, &mut all)?;
+    let columns = if inputs.len() > 3 { 6 } else { 3 };
+    let image = sheet(&all, &Layout { columns, ..Layout::default() })?;
+    Ok(save_png(path, &image, force)?)
+}
+
+/// Three views of each shape.
+fn cells(
+    inputs: &[Input],
+    suggestion: &Suggestion,
+    cells: &mut Vec<Cell>,
+) -> Result<(), PictureError> {
     for (i, (input, guess)) in inputs.iter().zip(&suggestion.shapes).enumerate() {
         for view in [View::Iso, View::Front, View::Side] {
             let image = draw(input, guess, i, suggestion, view)?;
@@ -43,9 +55,7 @@ pub(super) fn save(
             cells.push(Cell { image: Some(image), caption });
         }
     }
-    let columns = if inputs.len() > 3 { 6 } else { 3 };
-    let image = sheet(&cells, &Layout { columns, ..Layout::default() })?;
-    Ok(save_png(path, &image, force)?)
+    Ok(())
 }
 
 fn draw(
