@@ -40,7 +40,7 @@ fn block(centre: [f64; 3], half: [f64; 3], turn: f64) -> Element {
 }
 
 /// Three tables of one top and one leg, with an element on each part.
-fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
+pub(super) fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
     struct Table(Shared, Shared);
     impl Field for Table {
         fn value(&self, p: DVec3) -> f64 {

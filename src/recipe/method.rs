@@ -1,9 +1,9 @@
 //! `[morph]` and `[[hybrids]]`: which method, between what, with which weights.
 
+use super::features::FeatureMorph;
 use super::primitive::{finite, is_default, positive};
 use super::source::join;
 use super::time::Times;
-use super::features::FeatureMorph;
 use super::value::{Auto, PlainOr};
 use super::{Problem, Recipe, SurfaceMethod, did_you_mean};
 use schemars::JsonSchema;
@@ -29,6 +29,9 @@ pub struct MorphEntry {
     /// The shapes of a group.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub among: Option<Vec<String>>,
+    /// What hybrids of the method `auto` are to look like; by default `average`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub style: Option<StyleEntry>,
     /// What the features' weights blend; by default `maps`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blend: Option<BlendEntry>,
@@ -75,7 +78,8 @@ pub enum MethodEntry {
     Graft,
     /// Features of any number of shapes (paper 001, eq. 8).
     Group,
-    /// Graft or group where there are features, else space-time; one shape alone as it is.
+    /// Graft or group with parameters chosen by a search; features are suggested where the recipe has
+    /// none, and where no parts are found it is space-time. One shape alone as it is.
     #[default]
     Auto,
     /// Two surface files of kind pde: their curves are blended and the equation solved again.
@@ -105,6 +109,21 @@ impl MethodEntry {
             _ => return None,
         })
     }
+}
+
+/// What hybrids of the method `auto` are to look like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum StyleEntry {
+    /// An in-between everywhere.
+    #[default]
+    Average,
+    /// Whole parts of one shape or the other; of a pair they change places one after another.
+    Swap,
+    /// The lesser shapes grow out of the dominant one.
+    Grow,
+    /// The lesser shapes shrink towards the dominant one.
+    Erode,
 }
 
 /// What the features' weights blend.
@@ -224,6 +243,7 @@ impl MorphEntry {
             method: self.method.or(base.method),
             between: of.between.clone(),
             among: of.among.clone(),
+            style: self.style.or(base.style),
             blend: self.blend.or(base.blend),
             inner: self.inner.or(base.inner),
             offset: self.offset.or(base.offset),

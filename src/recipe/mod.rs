@@ -20,7 +20,7 @@ pub use crate::num::near::{did_you_mean, nearest};
 pub use features::{ElementEntry, ElementShape, FeatureEntry, FeatureMorph, MeshShape};
 pub use method::{
     BlendEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry, OneOrMany, SpaceTimeEntry,
-    WeightingEntry, WeightingKind, Weights,
+    StyleEntry, WeightingEntry, WeightingKind, Weights,
 };
 pub use output::{GridEntry, MesherEntry, OutputEntry};
 pub use primitive::{BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Primitive, PrismShape};

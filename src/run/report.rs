@@ -1,7 +1,7 @@
 //! `run.json`: what was made, from what, how long it took.
 
 use crate::check::{Crumbs, Health};
-use crate::scene::{Input, LiveShape};
+use crate::scene::{Input, Search, LiveShape};
 use serde::Serialize;
 
 /// Seconds of each stage.
@@ -127,6 +127,8 @@ pub struct Report {
     pub peak_memory_mb: Option<f64>,
     /// What was assumed and found.
     pub notes: Vec<String>,
+    /// What was chosen for the hybrids whose method was `auto`.
+    pub searches: Vec<Search>,
     /// The frames.
     pub frames: Vec<FrameReport>,
 }

@@ -4,6 +4,7 @@
 //! Two steps: a [`Draft`] has read the shapes and knows how large the work will be; a [`Scene`]
 //! has the fields and plans.
 
+mod auto;
 mod body;
 mod draft;
 mod elements;
@@ -23,6 +24,7 @@ mod variant;
 #[cfg(test)]
 mod tests;
 
+pub use auto::{Search, Seen};
 pub use draft::Draft;
 pub use live::LiveShape;
 pub use single::Single;
@@ -30,7 +32,7 @@ pub use variant::Variant;
 
 use crate::grid::Lattice;
 use crate::job::Cancelled;
-use crate::recipe::RecipeError;
+use crate::recipe::{Recipe, RecipeError};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -72,6 +74,10 @@ pub struct Scene {
     pub notes: Vec<String>,
     /// The files read.
     pub inputs: Vec<Input>,
+    /// What was chosen for the hybrids whose method was `auto`.
+    pub searches: Vec<Search>,
+    /// The recipe with `auto` carried out: features suggested, parameters chosen.
+    pub recipe: Recipe,
 }
 
 /// SHA-256 of bytes, hexadecimal.

@@ -96,7 +96,7 @@ pub fn tune(
     for stage in &mut stages {
         stage.measure(&kins, plan, volumes, job)?;
     }
-    let candidates = options::candidates(&kins, style);
+    let candidates = options::candidates(&kins);
     let judged = candidates
         .par_iter()
         .map(|c| {

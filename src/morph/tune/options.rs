@@ -144,28 +144,34 @@ fn window(n: usize, count: usize) -> Course {
 }
 
 /// The combinations to try: an option a kind.
-pub(super) fn candidates(kins: &[Kin], style: Style) -> Vec<Vec<usize>> {
+pub(super) fn candidates(kins: &[Kin]) -> Vec<Vec<usize>> {
+    let windows = kins.iter().all(Kin::has_windows);
     let mut all: Vec<Vec<usize>> = vec![Vec::new()];
     for kin in kins {
         let longer = all.iter().flat_map(|c| {
-            let next = move |o: usize| c.iter().copied().chain([o]).collect::<Vec<_>>();
-            (0..kin.options.len()).map(next)
+            // each kind has a window of its own
+            let free = |o: &usize| !(windows && c.contains(o));
+            let next = |o: usize| c.iter().copied().chain([o]).collect::<Vec<_>>();
+            (0..kin.options.len()).filter(free).map(next).collect::<Vec<_>>()
         });
         all = longer.collect();
         // the first options are the preferred ones: few kinds keep them all
         all.sort_by_key(|c| c.iter().sum::<usize>());
         all.truncate(MOST);
     }
-    let windows = |kin: &Kin| matches!(kin.options.first(), Some(Choice { course: Some(Course::Pair(_)), .. }));
-    if style == Style::Swap && kins.iter().all(windows) {
-        // each kind in a time of its own
-        all.retain(|c| (0..kins.len()).all(|n| c.contains(&n)));
-    }
     all
+}
+
+impl Kin {
+    /// Whether the options are windows of time.
+    fn has_windows(&self) -> bool {
+        let moves = |c: &Choice| matches!(c.course, Some(Course::Pair(_)));
+        !self.options.is_empty() && self.options.iter().all(moves)
+    }
 }
 
 /// What the choice of options costs by itself.
 pub(super) fn bias(kins: &[Kin], candidate: &[usize]) -> f64 {
-    let weigh = |(kin, &o): (&Kin, &usize)| if kin.options.len() > 1 { o as f64 * STEP } else { 0.0 };
+    let weigh = |(kin, &o): (&Kin, &usize)| if kin.has_windows() { 0.0 } else { o as f64 * STEP };
     kins.iter().zip(candidate).map(weigh).sum()
 }

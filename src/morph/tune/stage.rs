@@ -111,7 +111,7 @@ impl Stage {
             .map(|i| {
                 job::check(job)?;
                 let (f, rows) = (&features[i], &self.rows[i]);
-                let options = kin_of(i).map_or(&[][..], |k| &k.options);
+                let options = kin_of(i).map_or(&[][..], |k| k.options.as_slice());
                 let each = options.iter().map(|o| {
                     let lam = o.course.as_ref().map_or_else(|| f.lam.clone(), |c| c.at(self.t));
                     let inner = o.inner.unwrap_or(plan.inner);
@@ -128,13 +128,7 @@ impl Stage {
 
     /// What a combination of options looks like.
     pub fn judge(&self, kins: &[Kin], candidate: &[usize]) -> Outlook {
-        let n = self.hybrid.features.len();
-        let mut option = vec![0; n];
-        for (kin, &o) in kins.iter().zip(candidate) {
-            kin.features.iter().for_each(|&i| option[i] = o);
-        }
-        let set: Vec<_> = (0..n).filter_map(|i| self.measured[i].get(option[i])).collect();
-        let f = self.values(&set);
+        let f = self.values(&self.setting(kins, candidate));
         let slack = SLACK * self.step;
         let solid: Vec<bool> = f.iter().map(|&v| v < slack).collect();
         let label = self.label(&solid);
@@ -152,6 +146,30 @@ impl Stage {
             volume: if self.mean > 0.0 { whole * self.step.powi(3) / self.mean } else { 1.0 },
             lame: self.lame(&label, main.unwrap_or(0) as u32),
         }
+    }
+
+    /// Where and what the field of a combination is.
+    #[cfg(test)]
+    pub fn field(&self, kins: &[Kin], candidate: &[usize]) -> Vec<(DVec3, f64)> {
+        let values = self.values(&self.setting(kins, candidate));
+        (0..values.len()).map(|r| (self.point(r), values[r])).collect()
+    }
+
+    /// Weights and parameters of each feature.
+    fn setting(&self, kins: &[Kin], candidate: &[usize]) -> Vec<&(Vec<f64>, Measured)> {
+        let n = self.hybrid.features.len();
+        let mut option = vec![0; n];
+        for (kin, &o) in kins.iter().zip(candidate) {
+            kin.features.iter().for_each(|&i| option[i] = o);
+        }
+        (0..n).filter_map(|i| self.measured[i].get(option[i])).collect()
+    }
+
+    /// Where a kept sample lies.
+    fn point(&self, r: usize) -> DVec3 {
+        let (at, [sx, sy, _]) = (self.at[r], self.size.to_array());
+        let cell = UVec3::new(at % sx, at / sx % sy, at / (sx * sy));
+        self.low + (cell.as_dvec3() + 0.5) * self.step
     }
 
     /// The field of a setting, as the hybrid mixes it.
@@ -222,13 +240,8 @@ impl Stage {
 
     /// Features whose element stands on the floor although the main piece does not reach it there.
     fn lame(&self, label: &[u32], main: u32) -> usize {
-        let point = |r: usize| {
-            let (at, [sx, sy, _]) = (self.at[r], self.size.to_array());
-            let cell = UVec3::new(at % sx, at / sx % sy, at / (sx * sy));
-            self.low + (cell.as_dvec3() + 0.5) * self.step
-        };
         let held = |r: &usize| label[*r] == main && main > 0;
-        let held: Vec<DVec3> = (0..label.len()).filter(held).map(point).collect();
+        let held: Vec<DVec3> = (0..label.len()).filter(held).map(|r| self.point(r)).collect();
         let bounds = Aabb::of(held.iter().copied());
         if bounds.is_empty() {
             return self.hybrid.features.len();
