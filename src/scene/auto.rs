@@ -69,6 +69,7 @@ pub(super) fn with_features(
     }
     if wanted.iter().any(surface) {
         let why = "auto: no parts are sought on surfaces; space-time instead";
+        whole(&mut recipe);
         return Ok((recipe, vec![why.to_owned()]));
     }
     let mut singles = Vec::with_capacity(wanted.len());
@@ -89,6 +90,7 @@ pub(super) fn with_features(
     let mut found: Vec<String> = suggestion.shapes.iter().map(words).collect();
     if suggestion.shapes.iter().any(|g| g.chair.is_none()) {
         found.push("auto: no parts of a chair to pair; space-time instead".to_owned());
+        whole(&mut recipe);
         return Ok((recipe, found));
     }
     for ((name, bounds, _), guess) in singles.iter().zip(&suggestion.shapes) {
@@ -98,6 +100,18 @@ pub(super) fn with_features(
     }
     recipe.features = suggest::features(&suggestion);
     Ok((recipe, found))
+}
+
+/// What `auto` is where no parts are found.
+fn whole(recipe: &mut Recipe) {
+    let auto = |e: &MorphEntry| e.method == Some(MethodEntry::Auto);
+    let Recipe { morph, hybrids, .. } = recipe;
+    if auto(morph) || morph.method.is_none() {
+        morph.method = Some(MethodEntry::SpaceTime);
+    }
+    for h in hybrids.iter_mut().filter(|h| auto(h)) {
+        h.method = Some(MethodEntry::SpaceTime);
+    }
 }
 
 /// An error of a shape alone, with its line in the recipe.

@@ -1,3 +1,5 @@
+/// `morph` with its defaults: parts found, parameters searched.
+mod auto;
 /// `check` and its JSON.
 mod check;
 /// `convert`: meshes and solids in, meshes and fields out.
