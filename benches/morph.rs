@@ -57,7 +57,7 @@ fn open(recipe: &Path, cells: u32) -> Tried<Scene> {
 /// The first hybrid's field.
 fn hybrid(scene: &Scene) -> Tried<Shared> {
     let variant = scene.variants.first().ok_or("no hybrid")?;
-    Ok(variant.morph(0.5)?.at(0.5, &Quiet)?)
+    Ok(variant.morph(0.5, &Quiet)?.at(0.5, &Quiet)?)
 }
 
 /// From files to a mesh file.

@@ -41,12 +41,17 @@ fn sequences(c: &mut Criterion) -> Result<(), SurfaceError> {
     let [from, to] = [PdeSurface::new(&curves[0], plain)?, PdeSurface::new(&curves[1], plain)?];
     let methods = [Method::Boundary, Method::Modes, Method::Combined, Method::Spine];
     for method in methods {
-        let morph = |a, b| PdeMorph::new(a, b, MorphOptions { method, ..Default::default() });
+        let morph = |a: &PdeSurface, b: &PdeSurface| {
+            PdeMorph::new(a, b, MorphOptions { method, ..Default::default() })
+        };
         let made = morph(&from, &to)?;
         group.throughput(Throughput::Elements(u64::from(9 * POINTS * POINTS)));
-        group.bench_function(BenchmarkId::new("frame of 9 x 40 x 40", format!("{method:?}")), |b| {
-            b.iter(|| Ok::<_, SurfaceError>(made.frame(black_box(0.4))?.grid(&us, &vs)));
-        });
+        group.bench_function(
+            BenchmarkId::new("frame of 9 x 40 x 40", format!("{method:?}")),
+            |b| {
+                b.iter(|| Ok::<_, SurfaceError>(made.frame(black_box(0.4))?.grid(&us, &vs)));
+            },
+        );
         group.throughput(Throughput::Elements(u64::from(FRAMES * 9 * POINTS * POINTS)));
         group.bench_function(BenchmarkId::new("sequence of 13", format!("{method:?}")), |b| {
             b.iter(|| {

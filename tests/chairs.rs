@@ -39,7 +39,7 @@ fn seat_height(f: &dyn Field) -> f64 {
 fn they_are_sound_and_stand() {
     for name in CHAIRS {
         let chair = open(name);
-        let (lattice, shells) = (chair.lattice, chair.shells());
+        let (lattice, shells) = (chair.lattice, chair.shells().unwrap());
         let (field, _) = chair.field(&Quiet).unwrap();
         let sampling = sample(&*field, lattice, &Quiet).unwrap();
         assert!(!sampling.stats.border_clipped, "{name}");

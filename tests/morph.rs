@@ -48,7 +48,7 @@ fn hybrids<S: AsRef<str>>(keys: impl IntoIterator<Item = S>) -> String {
 }
 
 fn field(variant: &Variant, t: f64) -> Shared {
-    variant.morph(t).unwrap().at(t, &Quiet).unwrap()
+    variant.morph(t, &Quiet).unwrap().at(t, &Quiet).unwrap()
 }
 
 /// The mesh of a hybrid at a time, as a run makes it.
@@ -61,12 +61,14 @@ fn frame(scene: &Scene, variant: &Variant, t: f64) -> FrameResult {
         crumbs: variant.crumbs,
         verify: false,
     };
-    make(&work, &|job| variant.morph(t).unwrap().at(t, job), &Quiet).unwrap()
+    make(&work, &|job| variant.morph(t, &Quiet).unwrap().at(t, job), &Quiet).unwrap()
 }
 
 /// Every pair method and every inner function, weighting and blend of a graft.
 fn methods() -> Vec<String> {
-    let mut all = vec!["method = 'linear'".to_owned(), "method = 'feature-volume'".to_owned()];
+    let mut all: Vec<String> = ["linear", "feature-volume", "level-set", "transport", "warp"]
+        .map(|m| format!("method = '{m}'"))
+        .into();
     for form in ["l", "s", "half-cylinders"] {
         all.push(format!("method = 'space-time'\nspace-time = {{ form = '{form}' }}"));
     }
@@ -154,6 +156,8 @@ fn a_weight_of_one_in_a_group_gives_that_shape_back() {
             "method = 'linear'",
             "method = 'space-time'",
             "method = 'group'",
+            "method = 'transport'",
+            "method = 'warp'",
             "method = 'group'\nblend = 'fields'\ninner = 'linear'",
             "method = 'group'\ninner = 'space-time'",
         ] {
@@ -163,7 +167,7 @@ fn a_weight_of_one_in_a_group_gives_that_shape_back() {
     let scene =
         scene(96, &format!("among = ['ladderback', 'plank', 'bistro']\n{}", hybrids(&keys)));
     let step = scene.lattice.step;
-    for (shape, variants) in shapes.iter().zip(scene.variants.chunks(5)) {
+    for (shape, variants) in shapes.iter().zip(scene.variants.chunks(7)) {
         let input = Surface::input(shape, step);
         variants.par_iter().for_each(|v| {
             same(&v.name, frame(&scene, v, 0.0).mesh.as_ref(), &input, step);
@@ -180,6 +184,12 @@ fn grafts() -> Vec<String> {
         }
     }
     all
+}
+
+/// The methods that do not blend; their own lattices coarse, to be quick.
+fn others() -> [String; 3] {
+    ["method = 'level-set'", "method = 'transport'\ntransport.samples = 40", "method = 'warp'"]
+        .map(str::to_owned)
 }
 
 /// Bit for bit, but where only the sign is known.
@@ -199,6 +209,7 @@ fn agree(sparse: &Bricks<f32>, dense: &Bricks<f32>) -> bool {
 #[test]
 fn sparse_is_dense_for_grafts() {
     let mut keys = grafts();
+    keys.extend(others());
     keys.push("blend = 'fields'\ninner = 'linear'\nweighting = 'transfinite'".to_owned());
     keys.push("weighting = 'inverse-square'\nframes = 'plank'".to_owned());
     let scene = scene(48, &format!("between = ['windsor', 'plank']\n{}", hybrids(keys)));
@@ -228,7 +239,7 @@ fn random(mut state: u64) -> impl FnMut() -> f64 {
 
 #[test]
 fn bounds_of_grafts_hold() {
-    let keys = grafts().into_iter().chain(
+    let keys = grafts().into_iter().chain(others()).chain(
         ["s", "half-cylinders"]
             .map(|f| format!("inner = 'space-time'\nspace-time = {{ form = '{f}' }}")),
     );
@@ -259,6 +270,9 @@ fn meshes_of_hybrids_need_no_repair() {
         "method = 'space-time'",
         "method = 'space-time'\nspace-time = { form = 'half-cylinders' }",
         "method = 'feature-volume'",
+        "method = 'level-set'",
+        "method = 'transport'\ntransport.samples = 40",
+        "method = 'warp'",
         "method = 'graft'",
         "method = 'graft'\nblend = 'fields'\ninner = 'linear'\nweighting = 'transfinite'",
         "method = 'graft'\ninner = 'erode'",
@@ -391,6 +405,27 @@ fn a_run_is_the_same_on_one_thread_and_on_two() {
     assert!(one.0 == two.0, "meshes differ");
     assert!(one.1 == two.1, "pictures differ");
     assert_eq!(one.2, two.2);
+}
+
+#[test]
+fn other_methods_are_the_same_on_one_thread_and_on_two() {
+    let solids = recipes().join("../chairs").display().to_string();
+    let methods = ["level-set", "transport", "warp"];
+    let hybrids: String =
+        methods.iter().map(|m| format!("[[hybrids]]\nname = '{m}'\nmethod = '{m}'\n")).collect();
+    let morph = format!(
+        "between = ['windsor', 'plank']\nt = 0.4\ntransport.samples = 40\n{hybrids}\
+         [output]\nmesh = '{{name}}.stl'\n"
+    );
+    let made = ["1", "2"].map(|threads| {
+        let folder = Folder::new();
+        folder.put("pair.toml", &text(48, &morph).replace("../chairs", &solids));
+        folder.run(&["run", "pair.toml", "--threads", threads]).ends(0);
+        methods.map(|m| fs::read(folder.join(&format!("{m}.stl"))).unwrap())
+    });
+    for (m, (one, two)) in methods.iter().zip(made[0].iter().zip(&made[1])) {
+        assert!(one.len() > 10_000 && one == two, "{m}: meshes differ");
+    }
 }
 
 /// The lattice is the same for all hybrids of a recipe, and holds each of them.

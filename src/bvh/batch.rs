@@ -55,6 +55,11 @@ impl Bvh {
         (hit.slot != u32::MAX).then(|| self.describe(p, hit.distance2, hit.slot))
     }
 
+    /// The triangle of a hit, as [`super::Nearest::face`] names it.
+    pub fn face_of(&self, hit: &Hit) -> Option<u32> {
+        self.faces.get(hit.slot as usize).copied()
+    }
+
     fn run(&self, at: &[DVec3], out: &mut [Hit], s: &mut Scratch) {
         if at.len() <= LANES || !self.gather_for(at, RUN_CAP, s) {
             for (at, out) in at.chunks(LANES).zip(out.chunks_mut(LANES)) {

@@ -1,5 +1,10 @@
 use glam::DVec3;
 
+/// Distance from a point to one triangle, mm; to a segment or point where it has no area.
+pub fn gap(corners: [DVec3; 3], p: DVec3) -> f64 {
+    super::triangle::Tri::new(corners).distance2(p.x, p.y, p.z).sqrt()
+}
+
 /// Whether two flat convex polygons (triangles, or segments of two points) are separated by more
 /// than `slack` mm. Errs on the side of `false`: what touches or overlaps is never called apart.
 ///
@@ -7,7 +12,7 @@ use glam::DVec3;
 /// of one with a side of the other.
 pub fn apart(a: &[DVec3], b: &[DVec3], slack: f64) -> bool {
     let (na, nb) = (normal(a), normal(b));
-    let gap = |axis: DVec3| gap(a, b, axis) > slack;
+    let gap = |axis: DVec3| gap_along(a, b, axis) > slack;
     if gap(na) || gap(nb) {
         return true;
     }
@@ -33,7 +38,7 @@ fn normal(p: &[DVec3]) -> DVec3 {
 }
 
 /// Distance between the shadows on an axis; negative when they overlap or the axis says nothing.
-fn gap(a: &[DVec3], b: &[DVec3], axis: DVec3) -> f64 {
+fn gap_along(a: &[DVec3], b: &[DVec3], axis: DVec3) -> f64 {
     // sides nearly parallel give a direction of round-off only
     let length = axis.length();
     if length <= 1e-9 || length.is_nan() {

@@ -7,6 +7,7 @@
 mod batch;
 mod contact;
 mod nearest;
+mod ray;
 mod rim;
 #[cfg(test)]
 mod tests;
@@ -14,8 +15,9 @@ mod triangle;
 mod winding;
 
 pub use batch::Hit;
-pub use contact::apart;
+pub use contact::{apart, gap};
 pub use nearest::Nearest;
+pub use ray::Exit;
 pub use rim::Rim;
 pub use winding::Winding;
 

@@ -19,12 +19,18 @@
 //! ```
 
 mod contact;
+pub mod distance;
 mod parts;
+mod stand;
 mod topology;
 mod triangles;
+mod wall;
 mod weld;
 
+pub use distance::Shell;
 pub use parts::{Crumbs, Part, Pieces, drop_crumbs, parts, solid_pieces};
+pub use stand::{Stance, stance};
+pub use wall::thinnest_wall;
 
 use crate::mesh::TriMesh;
 use crate::num::Aabb;
@@ -75,11 +81,13 @@ pub struct Health {
     pub area_mm2: f64,
     /// Lowest and highest corner of the box round it.
     pub bbox_mm: [[f64; 3]; 2],
-    /// Thinnest wall; not measured yet.
+    /// Thinnest wall, see [`thinnest_wall`]; [`inspect`] leaves it open, since it takes longer than
+    /// all the rest.
     pub min_wall_mm: Option<f64>,
     /// Solids other than the largest; `None` unless closed.
     pub floating_parts: Option<u64>,
-    /// Whether it stands by itself; not measured yet.
+    /// Whether it stands by itself: its centre of mass over the hull of what touches the floor;
+    /// `None` unless closed, oriented and of one solid.
     pub balanced: Option<bool>,
     /// Closed cavities inside solids; `None` unless closed.
     pub cavities: Option<u64>,
@@ -129,6 +137,9 @@ pub fn inspect(mesh: &TriMesh, options: &Options) -> Health {
         printable: false,
         reasons: Vec::new(),
     };
+    if health.closed && health.floating_parts == Some(0) && welded.astray == 0 {
+        health.balanced = stance(mesh).map(|s| s.margin > 0.0);
+    }
     health.reasons = reasons(&health, &topology, &sizes, welded.astray);
     health.printable = health.reasons.is_empty();
     health
@@ -246,5 +257,7 @@ fn reasons(health: &Health, topology: &Topology, sizes: &Sizes, astray: usize) -
     reasons
 }
 
+#[cfg(test)]
+mod measures;
 #[cfg(test)]
 mod tests;

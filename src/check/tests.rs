@@ -3,7 +3,7 @@ use glam::DAffine3;
 use std::f64::consts::{PI, TAU};
 
 /// A box from its corners.
-fn block(min: [f64; 3], max: [f64; 3]) -> TriMesh {
+pub(super) fn block(min: [f64; 3], max: [f64; 3]) -> TriMesh {
     let corners = Aabb::new(min.into(), max.into()).corners();
     let quads =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -28,7 +28,7 @@ fn wrapped(n: u32, m: u32, map: impl Fn(f64, f64) -> DVec3) -> TriMesh {
     }
 }
 
-fn torus(n: u32) -> TriMesh {
+pub(super) fn torus(n: u32) -> TriMesh {
     wrapped(n, n / 2, |u, v| {
         let (ring, tube) = (u * TAU, v * TAU);
         let r = 10.0 + 3.0 * tube.cos();
@@ -37,7 +37,7 @@ fn torus(n: u32) -> TriMesh {
 }
 
 /// An octahedron, split `n` times and blown up to a sphere.
-fn sphere(n: u32) -> TriMesh {
+pub(super) fn sphere(n: u32) -> TriMesh {
     let mut mesh = TriMesh {
         points: vec![DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z],
         faces: (0..4).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]).collect(),

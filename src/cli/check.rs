@@ -4,8 +4,9 @@ use super::failure::Failure;
 use super::inputs::Reading;
 use super::watch::Watch;
 use clap::Args;
-use fieldgraft::check::{Health, Options, inspect};
+use fieldgraft::check::{Health, Options, Shell, inspect, thinnest_wall};
 use fieldgraft::job::{self, Job};
+use fieldgraft::mesh::TriMesh;
 use fieldgraft::mesh::{Assume, Loaded, Unit, Up, read};
 use fieldgraft::recipe::{LengthUnit, ShapeEntry, UpAxis};
 use serde_json::{Map, Value, json};
@@ -25,7 +26,7 @@ pub struct Check {
     /// Judge as if scaled to this height
     #[arg(long, value_name = "MM")]
     print_height: Option<f64>,
-    /// Width of the printer's nozzle (walls are not measured yet)
+    /// Width of the printer's nozzle: a thinner wall is not printable
     #[arg(long, value_name = "MM")]
     nozzle: Option<f64>,
     /// Fail (4) when a mesh cannot be printed
@@ -137,10 +138,29 @@ impl Check {
         let loaded = load(file, entry)?;
         watch.say(&assumed(file, &loaded));
         watch.detail(&format!("  {}", loaded.found.summary().replace('\n', "; ")));
-        let health = inspect(&loaded.mesh, &Options::default());
+        let mut health = inspect(&loaded.mesh, &Options::default());
+        self.walls(loaded.mesh, &mut health, watch)?;
         let told = if self.json { json_line(file, &health) } else { words(file, &health) };
         watch.put(&told)?;
         Ok(health.printable)
+    }
+}
+
+impl Check {
+    /// Measures the walls of a closed mesh, and judges them by the nozzle.
+    fn walls(&self, mesh: TriMesh, health: &mut Health, job: &dyn Job) -> Result<(), Failure> {
+        if health.volume_mm3.is_none() {
+            return Ok(());
+        }
+        health.min_wall_mm = thinnest_wall(&Shell::new(mesh), job)?;
+        if let (Some(wall), Some(nozzle)) = (health.min_wall_mm, self.nozzle)
+            && wall < nozzle
+        {
+            let why = format!("its thinnest wall has {wall:.2} mm, the nozzle {nozzle} mm");
+            health.reasons.push(why);
+            health.printable = false;
+        }
+        Ok(())
     }
 }
 
@@ -162,10 +182,13 @@ fn words(file: &Path, h: &Health) -> String {
         (0..3).map(|i| format!("{:.1}", h.bbox_mm[1][i] - h.bbox_mm[0][i])).collect();
     let volume = h.volume_mm3.map_or_else(|| "unknown".to_owned(), |v| format!("{:.1}", v / 1e3));
     let genus = h.genus.map_or_else(|| "unknown".to_owned(), |g| g.to_string());
+    let wall = h.min_wall_mm.map_or_else(|| "unknown".to_owned(), |w| format!("{w:.2}"));
+    let stands = h.balanced.map_or("unknown", yes);
     let mut text = format!(
         "{}: {verdict}\n  triangles {}, vertices {}\n  closed {}, manifold edges {}, manifold \
          vertices {}, oriented {}\n  self-intersections {}\n  components {}, floating parts {}, \
-         cavities {}, genus {genus}\n  size {} mm, volume {volume} cm3, area {:.1} cm2",
+         cavities {}, genus {genus}\n  size {} mm, volume {volume} cm3, area {:.1} cm2\n  thinnest \
+         wall {wall} mm, stands by itself {stands}",
         file.display(),
         h.triangles,
         h.vertices,

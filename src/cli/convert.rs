@@ -62,7 +62,7 @@ impl Convert {
         if self.making.dry_run {
             return Ok(());
         }
-        let (lattice, inputs) = (single.lattice, single.inputs().to_vec());
+        let (lattice, t, inputs) = (single.lattice, single.t, single.inputs().to_vec());
         let mut notes = single.notes().to_vec();
         let (field, found) = single.field(watch).map_err(plain)?;
         found.iter().for_each(|n| watch.say(unnamed(n)));
@@ -80,7 +80,7 @@ impl Convert {
             notes,
             ..Report::default()
         };
-        self.make(&field, lattice, report, start, watch)
+        self.make(&field, (lattice, t), report, start, watch)
     }
 
     /// Refuses options and outputs that cannot be, before any work.
@@ -114,14 +114,14 @@ impl Convert {
     fn make(
         &self,
         field: &Shared,
-        lattice: Lattice,
+        (lattice, t): (Lattice, f64),
         mut report: Report,
         start: Instant,
         watch: &Watch,
     ) -> Result<(), Failure> {
         let work = Work {
             variant: "",
-            t: 0.0,
+            t,
             lattice,
             mesher: self.mesher.unwrap_or_default(),
             crumbs: self.crumbs,
@@ -208,5 +208,12 @@ pub fn names(output: &str, picture: Option<String>) -> Names {
     let folder = PathBuf::new();
     // `hybrid-{t}.stl` has its report in `hybrid.run.json`
     let report = report.replace("-.run.json", ".run.json").replace("_.run.json", ".run.json");
-    Names { folder, mesh: output.to_owned(), picture, report, unnamed: String::new() }
+    Names {
+        folder,
+        mesh: output.to_owned(),
+        picture,
+        animations: vec![],
+        report,
+        unnamed: String::new(),
+    }
 }

@@ -104,6 +104,7 @@ impl From<RunError> for Failure {
             RunError::Cancelled(e) => e.into(),
             RunError::Mesh(e) => e.into(),
             RunError::Picture(e) => e.into(),
+            RunError::Frames { .. } => Self::new(Self::LIMIT, e.to_string()),
             RunError::Exists(_) | RunError::Collision { .. } => Self::usage(e.to_string()),
             RunError::Morph(_) | RunError::Place { .. } => Self::new(Self::FAILED, e.to_string()),
         }

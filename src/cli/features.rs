@@ -9,14 +9,10 @@ use super::failure::Failure;
 use super::inputs::Reading;
 use super::watch::Watch;
 use clap::{Args, Subcommand};
-use fieldgraft::field::Shared;
-use fieldgraft::job::{self, Job};
-use fieldgraft::mesh::TriMesh;
-use fieldgraft::num::Aabb;
-use fieldgraft::parts::{self, Guess, Suggestion};
-use fieldgraft::recipe::{GridEntry, ShapeEntry};
+use fieldgraft::job::Job;
+use fieldgraft::parts::{Guess, Suggestion};
 use fieldgraft::run;
-use fieldgraft::scene::{Single, suggest};
+use fieldgraft::scene::suggest;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -58,41 +54,21 @@ pub struct Suggest {
     force: bool,
 }
 
-/// A mesh that was read.
-struct Input {
-    name: String,
-    entry: ShapeEntry,
-    bounds: Aabb,
-    field: Shared,
-    shells: TriMesh,
-}
-
 impl Suggest {
     /// Finds, tells and writes.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
-        let mut inputs = Vec::with_capacity(self.inputs.len());
-        let names = names(&self.inputs);
-        for (name, entry) in names.into_iter().zip(self.reading.shapes(&self.inputs)?) {
-            job::check(watch)?;
-            inputs.push(read(name, entry, watch)?);
-        }
-        watch.stage("parts");
-        let start = std::time::Instant::now();
-        let fields: Vec<_> = inputs.iter().map(|i| (i.name.as_str(), &*i.field)).collect();
-        let suggestion = parts::suggest(&fields, watch)?;
-        watch.detail(&format!("parts found in {:.2} s", start.elapsed().as_secs_f64()));
-        for (input, guess) in inputs.iter_mut().zip(&suggestion.shapes) {
-            suggest::place(&mut input.entry, &guess.pose, &input.bounds);
-        }
+        let shapes = names(&self.inputs).into_iter().zip(self.reading.shapes(&self.inputs)?);
+        let looked = suggest::look(shapes.collect(), Path::new(""), watch)?;
+        looked.notes.iter().for_each(|n| watch.say(n));
         if let Some(path) = &self.picture {
             watch.stage("picture");
-            picture::save(path, &inputs, &suggestion, self.force)?;
+            picture::save(path, &looked.shells, &looked.suggestion, self.force)?;
         }
         if let Some(path) = &self.output {
-            let text = write::recipe(path, &inputs, &suggestion)?;
+            let text = write::recipe(path, &looked.shapes, &looked.suggestion)?;
             run::place_text(path, &text, self.force)?;
         }
-        self.tell(&suggestion, watch)
+        self.tell(&looked.suggestion, watch)
     }
 
     fn tell(&self, suggestion: &Suggestion, watch: &Watch) -> Result<(), Failure> {
@@ -114,13 +90,14 @@ impl Suggest {
 }
 
 /// What was found of a shape, in words.
-fn words(guess: &Guess) -> String {
+pub fn words(guess: &Guess) -> String {
     let found = match &guess.chair {
         Some(chair) => chair.words(),
         None => "no chair; slabs from bottom to top".to_owned(),
     };
     let turn = guess.pose.turn.to_degrees();
-    let turned = if turn.abs() > 0.005 { format!("; turned by {turn:.0} degrees") } else { String::new() };
+    let turned =
+        if turn.abs() > 0.005 { format!("; turned by {turn:.0} degrees") } else { String::new() };
     format!("{found} (confidence {:.2}){turned}", guess.confidence)
 }
 
@@ -128,6 +105,7 @@ fn shape(guess: &Guess) -> Value {
     json!({
         "name": guess.name,
         "chair": guess.chair.is_some(),
+        "seat_mm": guess.chair.as_ref().map(|c| c.seat.top),
         "found": words(guess),
         "confidence": guess.confidence,
         "turn_deg": guess.pose.turn.to_degrees(),
@@ -135,16 +113,6 @@ fn shape(guess: &Guess) -> Value {
         "scale": guess.pose.scale,
         "warnings": guess.warnings,
     })
-}
-
-fn read(name: String, entry: ShapeEntry, watch: &Watch) -> Result<Input, Failure> {
-    watch.stage(&format!("read {name}"));
-    let single = Single::open(&name, entry.clone(), &GridEntry::default(), Path::new(""))?;
-    watch.say(single.note());
-    let (bounds, shells) = (single.bounds(), single.shells());
-    let (field, notes) = single.field(watch)?;
-    notes.iter().for_each(|n| watch.detail(n));
-    Ok(Input { name, entry, bounds, field, shells })
 }
 
 /// The files' own names, made different where they are the same.

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use clap::Args;
 use fieldgraft::recipe::{
-    LengthUnit, MesherEntry, PlainOr, ShapeEntry, SignEntry, UpAxis, kind, read_text,
+    LengthUnit, MesherEntry, PlainOr, ShapeEntry, SignEntry, SkinEntry, UpAxis, kind, read_text,
     word,
 };
 use std::path::Path;
@@ -29,6 +29,9 @@ pub struct Reading {
     /// Give open or one-sided surfaces, and curves, this thickness; 0 gives none
     #[arg(long, value_name = "MM", value_delimiter = ',')]
     pub thickness: Vec<f64>,
+    /// How surfaces become solid: auto, solid (holes are closed by winding number) or shell
+    #[arg(long, value_name = "SKIN", value_delimiter = ',')]
+    pub skin: Vec<String>,
     /// Hold surfaces that move at this time in [0, 1]; auto lets them follow -t
     #[arg(long, value_name = "T", value_delimiter = ',')]
     pub at: Vec<String>,
@@ -44,6 +47,7 @@ impl Reading {
         let height = each("--height", &self.height, n, lengths)?;
         let thicken = each("--thicken", &self.thicken, n, lengths)?;
         let thickness = each("--thickness", &self.thickness, n, lengths)?;
+        let skin = each("--skin", &self.skin, n, words::<SkinEntry>)?;
         let at = each("--at", &self.at, n, moments)?;
         // one value for all is for those inputs that can have it, one each is meant as it is typed
         let meant = |values: usize, fits: bool| fits || n == 1 || values == n;
@@ -61,6 +65,9 @@ impl Reading {
             }
             if meant(self.thickness.len(), is == Is::Surface) {
                 entry.thickness = thickness[i];
+            }
+            if meant(self.skin.len(), is == Is::Surface) {
+                entry.skin = skin[i].unwrap_or_default();
             }
             if meant(self.at.len(), is == Is::Surface) {
                 entry.at = at[i];

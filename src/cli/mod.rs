@@ -4,6 +4,7 @@
 //! input; 4 made, but not printable, with `--strict`; 5 over a limit; 130 interrupted.
 
 mod check;
+mod compare;
 mod convert;
 mod failure;
 mod features;
@@ -56,6 +57,8 @@ enum Command {
     Morph(Box<morph::Morph>),
     /// Make what a recipe says, or one shape from its file
     Run(Box<run::Run>),
+    /// Compare methods on one recipe: numbers, pictures and one report
+    Compare(Box<compare::Compare>),
     /// Tell whether meshes can be printed: closed, manifold, free of self-contact, of one piece
     Check(check::Check),
     /// Turn any mesh, solid or surface into a clean watertight mesh
@@ -109,6 +112,7 @@ pub fn main() -> ExitCode {
     let done = match cli.command {
         Command::Morph(c) => c.run(&watch),
         Command::Run(c) => c.run(&watch),
+        Command::Compare(c) => c.run(&watch),
         Command::Check(c) => c.run(&watch),
         Command::Convert(c) => c.run(&watch),
         Command::Features(c) => c.run(&watch),

@@ -12,7 +12,7 @@ use fieldgraft::recipe::{
     ShapeEntry, Source, StyleEntry, Times, VERSION, word,
 };
 use fieldgraft::run::{self, Report, RunError};
-use fieldgraft::scene::Search;
+use fieldgraft::scene::{Search, suggest};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -31,13 +31,14 @@ pub struct Morph {
     /// Weights of the meshes instead of a time, such as 2,1,1
     #[arg(long, value_delimiter = ',', value_name = "W", conflicts_with = "t")]
     weights: Vec<f64>,
-    /// How: auto (the default: parts are found and paired), linear or space-time
+    /// How: auto (the default: parts are found and paired), linear, space-time, level-set or transport
     #[arg(long, value_name = "METHOD", value_parser = method)]
     method: Option<MethodEntry>,
     /// What hybrids of auto look like: average (the default), swap, grow or erode
     #[arg(long, value_name = "STYLE", value_parser = style)]
     style: Option<StyleEntry>,
-    /// How the meshes are laid over each other: box (all stand where the first does) or none
+    /// How the meshes are laid over each other: box (all stand where the first does), pose (each as
+    /// chairs do) or none
     #[arg(long, value_enum, default_value_t = Align::Box)]
     align: Align,
     #[command(flatten)]
@@ -65,6 +66,8 @@ pub struct Morph {
 enum Align {
     /// Their boxes' centres and floors agree with the first one's
     Box,
+    /// Each stands on the floor and faces the front, as far as that can be found
+    Pose,
     /// They stay where they are
     None,
 }
@@ -79,15 +82,20 @@ fn style(text: &str) -> Result<StyleEntry, String> {
 
 fn method(text: &str) -> Result<MethodEntry, String> {
     match word(text)? {
-        m @ (MethodEntry::Linear | MethodEntry::SpaceTime | MethodEntry::Auto) => Ok(m),
-        _ => Err("this method needs features; write a recipe for `fieldgraft run`".to_owned()),
+        MethodEntry::FeatureVolume
+        | MethodEntry::Graft
+        | MethodEntry::Group
+        | MethodEntry::Warp => {
+            Err("this method needs features; write a recipe for `fieldgraft run`".to_owned())
+        }
+        plain => Ok(plain),
     }
 }
 
 impl Morph {
     /// Makes the hybrids.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
-        let recipe = self.recipe()?;
+        let recipe = self.recipe(watch)?;
         if self.auto() {
             return self.run_auto(recipe, watch);
         }
@@ -190,7 +198,7 @@ impl Morph {
     }
 
     /// The recipe this command line stands for.
-    fn recipe(&self) -> Result<Recipe, Failure> {
+    fn recipe(&self, watch: &Watch) -> Result<Recipe, Failure> {
         let times: Vec<f64> = self.t.iter().flat_map(|t| t.0.iter().copied()).collect();
         let template = |name: &str| name.contains("{t}");
         let several = times.len() > 1;
@@ -204,6 +212,13 @@ impl Morph {
         let names = names(self.inputs.len());
         let mut shapes: BTreeMap<String, ShapeEntry> =
             names.iter().cloned().zip(self.reading.shapes(&self.inputs)?).collect();
+        if self.align == Align::Pose {
+            let looked = suggest::look(shapes.into_iter().collect(), Path::new(""), watch)?;
+            for guess in &looked.suggestion.shapes {
+                watch.say(&format!("{}: {}", guess.name, features::words(guess)));
+            }
+            shapes = looked.shapes.into_iter().collect();
+        }
         if self.align == Align::Box {
             for name in &names[1..] {
                 if let Some(shape) = shapes.get_mut(name) {

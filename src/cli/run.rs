@@ -7,7 +7,8 @@ use super::steps::{self, Task};
 use super::watch::Watch;
 use clap::{Args, ValueEnum};
 use fieldgraft::recipe::{
-    GridEntry, PlainOr, Recipe, RecipeError, ShapeEntry, Source, Times, VERSION, kind, read_text,
+    GridEntry, PlainOr, Recipe, RecipeError, ShapeEntry, SkinEntry, Source, Times, VERSION, kind,
+    read_text, word,
 };
 use fieldgraft::run::Names;
 use std::collections::BTreeMap;
@@ -37,6 +38,9 @@ pub struct Run {
     /// Thickness of a surface file that encloses nothing, and of a curve
     #[arg(long, value_name = "MM", value_parser = thickness)]
     thickness: Option<f64>,
+    /// How a surface file becomes solid: auto, solid (holes are closed by winding number) or shell
+    #[arg(long, value_name = "SKIN", value_parser = skin)]
+    skin: Option<SkinEntry>,
     #[command(flatten)]
     making: Making,
 }
@@ -59,6 +63,10 @@ fn thickness(text: &str) -> Result<f64, String> {
     mm.ok_or_else(|| format!("got `{text}`; expected millimetres, more than 0"))
 }
 
+fn skin(text: &str) -> Result<SkinEntry, String> {
+    word(text)
+}
+
 impl Run {
     /// Makes everything.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
@@ -66,9 +74,10 @@ impl Run {
             .map_err(|why| Failure::input(format!("{}: {why}", self.recipe.display())))?;
         let (mut recipe, source) = match kind(&text, &self.recipe) {
             Some(_) => self.shape()?,
-            None if self.thickness.is_some() => {
-                let why = "is for a surface file alone; in a recipe each shape has its `thickness`";
-                return Err(Failure::usage(format!("--thickness: {why}")));
+            None if self.thickness.is_some() || self.skin.is_some() => {
+                let key = if self.thickness.is_some() { "thickness" } else { "skin" };
+                let why = "is for a surface file alone; in a recipe each shape has its";
+                return Err(Failure::usage(format!("--{key}: {why} `{key}`")));
             }
             None => parse(&text, &self.recipe, &self.set)?,
         };
@@ -84,7 +93,8 @@ impl Run {
         let stem = self.recipe.file_stem().unwrap_or_default().to_string_lossy();
         // dots would part the key for --set
         let name = stem.replace('.', "-");
-        let mut shape = ShapeEntry { thickness: self.thickness, ..ShapeEntry::default() };
+        let (thickness, skin) = (self.thickness, self.skin.unwrap_or_default());
+        let mut shape = ShapeEntry { thickness, skin, ..ShapeEntry::default() };
         source(&self.recipe, &mut shape);
         // paths are relative to the recipe, which is taken to lie beside the file
         let file = PathBuf::from(self.recipe.file_name().unwrap_or_default());
@@ -144,7 +154,11 @@ impl Run {
         };
         let mesh = recipe.output.mesh.clone().unwrap_or_else(|| default.to_owned());
         let picture = recipe.output.picture.clone();
-        for (key, name) in [("mesh", Some(&mesh)), ("picture", picture.as_ref())] {
+        let animations = recipe.output.animations().to_vec();
+        let moving = animations.iter().map(|name| ("animation", Some(name)));
+        for (key, name) in
+            [("mesh", Some(&mesh)), ("picture", picture.as_ref())].into_iter().chain(moving)
+        {
             if name.is_some_and(|n| !stays_inside(n)) {
                 let why = "leaves the output folder; give a plain relative name";
                 let problem = fieldgraft::recipe::Problem::new(format!("output.{key}"), why);
@@ -156,6 +170,7 @@ impl Run {
             folder: self.output.clone().unwrap_or_default(),
             mesh,
             picture,
+            animations,
             report: "run.json".to_owned(),
             unnamed: unnamed.to_owned(),
         })
@@ -168,7 +183,7 @@ fn stays_inside(name: &str) -> bool {
 }
 
 /// Reads the recipe, with keys changed where asked.
-fn parse(text: &str, file: &Path, set: &[String]) -> Result<(Recipe, Source), RecipeFailure> {
+pub fn parse(text: &str, file: &Path, set: &[String]) -> Result<(Recipe, Source), RecipeFailure> {
     let read = Recipe::parse(text, file)?;
     if set.is_empty() {
         return Ok(read);
@@ -229,8 +244,10 @@ fn indexed(step: &str) -> Result<(String, Option<usize>), String> {
 }
 
 /// A bad recipe, or a bad `--set`.
-enum RecipeFailure {
+pub enum RecipeFailure {
+    /// The recipe.
     Recipe(RecipeError),
+    /// The command line.
     Usage(String),
 }
 

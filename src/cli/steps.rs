@@ -9,8 +9,8 @@ use fieldgraft::mesh::check_output;
 use fieldgraft::picture::Style;
 use fieldgraft::recipe::{GridEntry, Recipe, Source};
 use fieldgraft::run::{
-    self, FrameReport, Names, Prediction, Report, Settings, ShapeReport, available_memory,
-    coarsening, predict, probe,
+    self, AnimationReport, FrameReport, Names, Playing, Prediction, Report, Settings, ShapeReport,
+    animation_memory, available_memory, coarsening, predict, probe,
 };
 use fieldgraft::scene::{Draft, sha256};
 use std::path::Path;
@@ -58,9 +58,15 @@ pub fn made(work: Task<'_>, making: &Making, watch: &Watch) -> Result<Option<Mad
     }
     let mesher = recipe.output.mesher;
     let given = source.text().to_owned();
+    let playing = Playing::of(&recipe.output);
+    let style = Style::default();
+    let with_animations = |mut p: Prediction| {
+        p.memory_bytes += animation_memory(&p, &names.animations, style.size);
+        p
+    };
     let coarse = making.dry_run.then(|| (coarser(&recipe), source.clone()));
     let draft = Draft::open(recipe, source, beside, watch).map_err(plain)?;
-    let first = predict(&draft);
+    let first = with_animations(predict(&draft));
     let limit = limit(making);
     if let Some((recipe, source)) = coarse {
         refuse(&first, limit)?;
@@ -86,7 +92,8 @@ pub fn made(work: Task<'_>, making: &Making, watch: &Watch) -> Result<Option<Mad
         mesher,
         force: making.force,
         verify: making.verify || making.strict,
-        style: Style::default(),
+        playing,
+        style,
         recipe_hash: recipe_hash.clone(),
     };
     let seconds = start.elapsed().as_secs_f64();
@@ -141,11 +148,15 @@ pub fn finish(report: &Report, making: &Making, watch: &Watch) -> Result<(), Fai
     if let Some(mb) = report.peak_memory_mb {
         watch.detail(&format!("{:.2} s, peak memory {mb:.0} MB", report.seconds_total));
     }
+    report.animations.iter().for_each(|a| tell_animation(a, watch));
     let failed = report.frames.iter().filter(|f| f.error.is_some()).count();
     if failed > 0 {
         let of = report.frames.len();
         let why = report.frames.iter().find_map(|f| f.error.clone()).unwrap_or_default();
         let why = if of == 1 { why } else { format!("{failed} of {of} frames failed: {why}") };
+        return Err(Failure::new(Failure::FAILED, why));
+    }
+    if let Some(why) = report.animations.iter().find_map(|a| a.error.as_ref()) {
         return Err(Failure::new(Failure::FAILED, why));
     }
     if making.strict && !report.printable() {
@@ -157,6 +168,7 @@ pub fn finish(report: &Report, making: &Making, watch: &Watch) -> Result<(), Fai
 
 /// One or two lines on a frame.
 pub fn tell(f: &FrameReport, watch: &Watch) {
+    f.notes.iter().for_each(|n| watch.say(n));
     let what = if f.hybrid.is_empty() {
         format!("t {}", run::time_word(f.t))
     } else {
@@ -187,6 +199,22 @@ pub fn tell(f: &FrameReport, watch: &Watch) {
         "  morph {:.2} s, sample {:.2} s, mesh {:.2} s, check {:.2} s, write {:.2} s, picture {:.2} s; {} of {} bricks",
         s.morph, s.sample, s.mesh, s.check, s.write, s.picture, f.active_bricks, f.bricks
     ));
+}
+
+/// A line on an animation.
+fn tell_animation(a: &AnimationReport, watch: &Watch) {
+    if let Some(why) = a.note.as_ref().or(a.error.as_ref()) {
+        watch.say(&format!("no animation: {why}"));
+    }
+    let (Some(file), Some(bytes)) = (&a.file, a.file_bytes) else { return };
+    let mut parts = vec![format!("{} frames", a.frames), human(bytes)];
+    parts.push(format!("{:.1} s at {} frames a second", a.turns as f64 / a.fps, a.fps));
+    if !a.skipped.is_empty() {
+        let times: Vec<String> = a.skipped.iter().map(|&t| run::time_word(t)).collect();
+        parts.push(format!("without t {}, which failed", times.join(", ")));
+    }
+    watch.say(&format!("{file}: {}", parts.join(", ")));
+    watch.detail(&format!("  animation {:.2} s", a.seconds));
 }
 
 /// Every frame: hybrid and time, as far as the recipe alone tells.

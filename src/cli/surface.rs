@@ -1,6 +1,7 @@
 //! `surface`: parametric surfaces and curves as points or as meshes.
 
 mod frame;
+mod motion;
 mod out;
 mod rows;
 
@@ -23,7 +24,8 @@ pub struct Surface {
     /// The surface file (TOML or JSON, `kind = "pde"` and so on)
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     file: PathBuf,
-    /// Where it goes: CSV, STL, OBJ, PLY or GLB; `{t}` stands for the time; by default CSV to stdout
+    /// Where it goes: CSV, STL, OBJ, PLY or GLB; `{t}` stands for the time; by default CSV to stdout.
+    /// Several times in one GLB, whose name has no `{t}`, become a mesh that moves
     #[arg(short, long, value_name = "OUT")]
     output: Option<String>,
     /// Times: numbers, or ranges such as 0:1:0.125; repeatable. In [0, 1]; for kind dynamic, in the
@@ -100,6 +102,9 @@ impl Surface {
         watch.say(&format!("{}: {}", self.file.display(), file.story));
         file.warnings.iter().for_each(|w| watch.say(&format!("warning: {w}")));
         let times = self.times(&file, watch)?;
+        if self.moves(times.len()) {
+            return self.motion(&file, &times, watch);
+        }
         let targets = self.targets(&times)?;
         let wanted = Wanted {
             samples: self.samples,

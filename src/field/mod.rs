@@ -4,6 +4,7 @@
 //! distance field measures in millimetres.
 
 pub mod csg;
+pub mod dense;
 pub mod mesh;
 pub mod sample;
 pub mod sampled;

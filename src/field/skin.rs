@@ -5,9 +5,9 @@
 //! solid, by the winding number; the rest are *sheets*, to which the unsigned distance is taken, less
 //! half the thickness. A Klein bottle is closed and yet a sheet: it has one side.
 
+use super::Shared;
 use super::csg::{Join, Joined};
 use super::mesh::{MeshField, MeshFieldError, MeshOptions, Sign, Thicken, Which};
-use super::Shared;
 use crate::job::{Cancelled, Job};
 use crate::mesh::TriMesh;
 use std::sync::Arc;
@@ -50,7 +50,11 @@ pub struct Sides {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SkinError {
     /// Sheets without a thickness.
-    #[error("the surface encloses nothing: {}; give it a thickness", .0.story())]
+    #[error(
+        "the surface encloses nothing: {}; give it a thickness{}",
+        .0.story(),
+        if .0.open_edges > 0 { ", or skin = \"solid\" to close its holes by winding number" } else { "" }
+    )]
     Sheet(Sides),
     /// What the field of its triangles says.
     #[error(transparent)]
@@ -128,6 +132,8 @@ pub fn skin(
                 sheets.faces.append(&mut whole.faces);
             }
             Err(MeshFieldError::NoInside { .. }) => return Err(SkinError::Sheet(sides)),
+            // fins that are still points
+            Err(MeshFieldError::Empty { .. }) if !sheets.faces.is_empty() => {}
             Err(e) => return Err(e.into()),
         }
     }
@@ -135,7 +141,11 @@ pub fn skin(
         let mm = options.thickness.ok_or(SkinError::Sheet(sides))?;
         let thicken = Some(Thicken { mm, which: Which::All });
         let options = MeshOptions { thicken, sign: Sign::Unsigned, floor: None };
-        fields.push(Arc::new(MeshField::new(&sheets, &options, job)?.0));
+        match MeshField::new(&sheets, &options, job) {
+            Ok((field, _)) => fields.push(Arc::new(field)),
+            Err(MeshFieldError::Empty { .. }) if !fields.is_empty() => {}
+            Err(e) => return Err(e.into()),
+        }
     }
     let join = |a, b| -> Shared { Arc::new(Joined { a, b, join: Join::Add }) };
     match fields.into_iter().reduce(join) {

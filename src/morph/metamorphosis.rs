@@ -12,7 +12,7 @@ use crate::num::Aabb;
 use std::sync::Arc;
 
 pub(super) struct Metamorphosis {
-    plan: Plan,
+    pub plan: Plan,
 }
 
 const UNMEASURED: Local = Local { reach: 0.0, depth: 0.0, apart: 1.0, level: 0.0 };

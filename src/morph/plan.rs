@@ -1,8 +1,10 @@
 //! What a method needs to be told; the scene fills it in, [`super::build`] checks it.
 
+use super::{level_set, transport};
 use crate::element::Element;
 use crate::field::Shared;
 use crate::job::Cancelled;
+use crate::num::Aabb;
 use crate::weight::{Ease, Weighting};
 
 /// A shape that takes part in a morph.
@@ -145,9 +147,56 @@ impl Default for SpaceTime {
     }
 }
 
+/// A point of every shape that belongs together, beside those of the features.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Anchor {
+    /// Name, as in the recipe.
+    pub name: String,
+    /// Where it stands on each shape, in the order of the shapes, mm.
+    pub at: Vec<glam::DVec3>,
+}
+
+/// How the shapes become one. Each scheme takes of a [`Plan`] what it needs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Scheme {
+    /// Blending by features, or of whole shapes where there are none: what `blend`, `inner` and the
+    /// weightings say (paper 001).
+    #[default]
+    Blend,
+    /// The source's surface moves into the target's (Breen and Whitaker 2001). Two shapes.
+    LevelSet {
+        /// Cells of the lattice it moves on, mm; larger where there would be too many.
+        step: f64,
+    },
+    /// The shapes' matter is moved over the shortest way (Solomon et al. 2015).
+    Transport {
+        /// Samples along the longest side of the lattice it is moved on.
+        samples: u32,
+    },
+    /// The shapes are pulled onto common anchors and averaged (Cohen-Or et al. 1998). The features
+    /// give anchors too.
+    Warp {
+        /// Further anchors.
+        anchors: Vec<Anchor>,
+    },
+}
+
+impl Scheme {
+    /// Memory (bytes) that the scheme needs beside the shapes, over a domain.
+    pub fn bytes(&self, domain: &Aabb, shapes: usize) -> f64 {
+        match self {
+            Self::Blend | Self::Warp { .. } => 0.0,
+            Self::LevelSet { step } => level_set::count(domain, *step) * level_set::BYTES,
+            Self::Transport { samples } => transport::bytes(domain, *samples, shapes),
+        }
+    }
+}
+
 /// Everything a morph is made from.
 #[derive(Clone)]
 pub struct Plan {
+    /// How the shapes become one.
+    pub scheme: Scheme,
     /// The shapes, two or more.
     pub shapes: Vec<Part>,
     /// Features; empty for a morph of whole shapes.
@@ -176,6 +225,7 @@ impl Plan {
             k => Course::Fixed(vec![1.0; k]),
         };
         Self {
+            scheme: Scheme::Blend,
             shapes,
             features: Vec::new(),
             course,
@@ -219,6 +269,43 @@ pub enum MorphError {
          linear, grow, auto, mean or merge, in a morph of one of these"
     )]
     Inner(String),
+    /// An anchor is missing or there is one too many.
+    #[error("anchor `{anchor}` has {got} points for {shapes} shapes")]
+    Anchors {
+        /// Its name.
+        anchor: String,
+        /// Points given.
+        got: usize,
+        /// Shapes of the morph.
+        shapes: usize,
+    },
+    /// A method that takes two shapes only.
+    #[error("method `{method}` takes two shapes, got {got}; use another method")]
+    TwoShapes {
+        /// Which.
+        method: &'static str,
+        /// Shapes given.
+        got: usize,
+    },
+    /// Nothing lies in both shapes.
+    #[error(
+        "the shapes do not overlap: no point lies inside both `{a}` and `{b}`, and a level set grows \
+         only out of what both have; place them over each other, or use another method"
+    )]
+    Apart {
+        /// The source.
+        a: String,
+        /// The target.
+        b: String,
+    },
+    /// A shape without any inside.
+    #[error(
+        "`{0}` has no volume to move: no inside was found; give it a thickness, or use another method"
+    )]
+    Hollow(String),
+    /// Shapes that no lattice can hold.
+    #[error("the shapes have no finite size")]
+    Unbounded,
     /// A form that takes two shapes only.
     #[error("space-time form `half-cylinders` takes two shapes, got {0}; use `l` or `s`")]
     PairOnly(usize),

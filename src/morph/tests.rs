@@ -77,6 +77,7 @@ pub(super) fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
         inner: None,
     };
     Plan {
+        scheme: Scheme::Blend,
         shapes,
         features: vec![
             feature("top", (0..k).map(|j| block(tops[j], sizes[j], turns[j])).collect()),
@@ -121,6 +122,34 @@ fn morphs() -> Vec<(String, Plan)> {
                     }
                 }
             }
+        }
+    }
+    all.extend(schemes());
+    all
+}
+
+/// The methods that do not blend.
+fn schemes() -> Vec<(String, Plan)> {
+    let mut all = Vec::new();
+    for k in [2, 3] {
+        let anchor = |at: &[[f64; 3]]| Anchor {
+            name: "tip".to_owned(),
+            at: at[..k].iter().map(|&p| p.into()).collect(),
+        };
+        let tips = anchor(&[[-34.0, 4.0, 0.0], [24.0, -6.0, 0.0], [4.0, 14.0, 0.0]]);
+        for scheme in [
+            Scheme::LevelSet { step: 3.0 },
+            Scheme::Transport { samples: 16 },
+            Scheme::Warp { anchors: vec![tips] },
+        ] {
+            let mut p = plan(k, Inner::Linear, Blend::Maps);
+            p.scheme = scheme;
+            match p.scheme {
+                Scheme::LevelSet { .. } if k != 2 => continue,
+                Scheme::Warp { .. } => {}
+                _ => p.features.clear(),
+            }
+            all.push((format!("{k} {:?}", p.scheme), p));
         }
     }
     all

@@ -91,7 +91,8 @@ pub(super) fn find(
                 let z = (p.z - seat.top) / width;
                 let y = (p.y - low.y) / depth;
                 // what belongs to the back plane is no arm
-                let behind = back.is_some_and(|b| p.y > b.at + b.slope * p.z - b.front - 1.0);
+                let behind = back
+                    .is_some_and(|b| p.y > b.at + b.slope * p.z - b.front.min(0.05 * width) - 1.0);
                 p.x > 0.30 * width
                     && (0.14..=0.85).contains(&z)
                     && p.z > foot
@@ -118,10 +119,13 @@ fn back(matter: &[DVec3], seat_y: f64, width: f64, tall: f64, foot: f64) -> Opti
     let points: Vec<(f64, f64)> = rows.iter().map(|(z, ys)| (*z as f64, median(ys))).collect();
     let (at, slope) = line(&points);
     let off = |p: &DVec3| p.y - at - slope * p.z;
-    // posts may stand wider than the middle, and belong to the back where they are in its plane
+    // posts stand wider than that, often before the plane; arm rests seldom reach as high
+    let high = foot + 0.6 * (to - foot);
     let offs: Vec<f64> = behind.iter().map(off).collect();
-    let front = -quantile(&offs, 0.03);
-    let rear = quantile(&offs, 0.97);
+    let above: Vec<f64> = matter.iter().filter(|p| p.z > high).map(off).collect();
+    let posts: Vec<f64> = above.into_iter().filter(|d| d.abs() < 0.12 * width).collect();
+    let front = (-quantile(&offs, 0.01)).max(-quantile(&posts, 0.01));
+    let rear = quantile(&offs, 0.99).max(quantile(&posts, 0.99));
     let all: Vec<&DVec3> =
         matter.iter().filter(|p| off(p) > -front - 1.5 && off(p) < rear + 1.5).collect();
     let from = all.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);

@@ -83,7 +83,7 @@ pub(super) fn find(v: &Volume, seat: &Seat, floor: usize, top: usize) -> Base {
     }
     let in_contact: f64 = base.feet.iter().map(Region::area).sum();
     let long = |f: &&Region| {
-        let s = f.spread().size;
+        let s = f.spread();
         s.x > 0.45 * side && s.x > 3.0 * s.y
     };
     let runners: f64 = base.feet.iter().filter(long).map(Region::area).sum();
@@ -205,7 +205,8 @@ fn spokes(
             run.push((start + n) as f64 + 0.5);
         } else if !run.is_empty() {
             let middle = run.iter().sum::<f64>() / run.len() as f64;
-            lobes.push(centre + r * DVec2::from_angle(middle / BINS as f64 * std::f64::consts::TAU));
+            lobes
+                .push(centre + r * DVec2::from_angle(middle / BINS as f64 * std::f64::consts::TAU));
             run.clear();
         }
     }

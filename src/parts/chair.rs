@@ -1,5 +1,6 @@
 //! What was found of a chair, in millimetres, standing as its pose says.
 
+use super::stretchers::Side;
 use glam::{DQuat, DVec2, DVec3};
 
 /// How a shape has to be moved to stand as chairs do: on the floor z = 0, its mirror plane x = 0,
@@ -107,6 +108,19 @@ pub struct Arm {
     pub high: DVec3,
 }
 
+/// A bar between legs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretcher {
+    /// Between which legs.
+    pub side: Side,
+    /// One end of its axis: left or front.
+    pub from: DVec3,
+    /// The other end of its axis.
+    pub to: DVec3,
+    /// Radius.
+    pub radius: f64,
+}
+
 /// The parts of a chair.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chair {
@@ -118,6 +132,8 @@ pub struct Chair {
     pub back: Option<Back>,
     /// Arm rests at -x (left) and +x (right).
     pub arms: [Option<Arm>; 2],
+    /// Bars between its legs, the lowest of each side first.
+    pub stretchers: Vec<Stretcher>,
     /// How well each part was seen, in [0, 1]: mirror plane, seat, base.
     pub sure: [f64; 3],
 }
@@ -146,7 +162,50 @@ impl Chair {
             [Some(_), None] => "an arm on the left only",
             [None, Some(_)] => "an arm on the right only",
         };
-        format!("seat {:.0} mm high, {base}, {back}, {arms}", self.seat.top)
+        let bars = match self.stretchers.len() {
+            0 => String::new(),
+            1 => ", a stretcher".to_owned(),
+            n => format!(", {} stretchers", number(n)),
+        };
+        format!("seat {:.0} mm high, {base}, {back}, {arms}{bars}", self.seat.top)
+    }
+
+    /// Another size of the same chair.
+    pub(super) fn scaled(mut self, by: f64) -> Self {
+        let s = &mut self.seat;
+        for x in [&mut s.top, &mut s.thickness, &mut s.under] {
+            *x *= by;
+        }
+        (s.low, s.high) = (s.low * by, s.high * by);
+        match &mut self.base {
+            Base::Legs(l) | Base::Crossed(l) | Base::Sled(l) | Base::Cantilever(l) => {
+                for l in l {
+                    (l.foot, l.head) = (l.foot * by, l.head * by);
+                    (l.radius, l.reach) = (l.radius * by, l.reach * by);
+                }
+            }
+            Base::Column(c) => {
+                c.axis *= by;
+                for x in [&mut c.radius, &mut c.hub, &mut c.reach] {
+                    *x *= by;
+                }
+                c.spokes.iter_mut().for_each(|s| *s *= by);
+            }
+            Base::Solid => {}
+        }
+        if let Some(b) = &mut self.back {
+            b.half = b.half.map(|h| h * by);
+            for x in [&mut b.at, &mut b.top, &mut b.front, &mut b.rear] {
+                *x *= by;
+            }
+        }
+        for arm in self.arms.iter_mut().flatten() {
+            (arm.low, arm.high) = (arm.low * by, arm.high * by);
+        }
+        for s in &mut self.stretchers {
+            (s.from, s.to, s.radius) = (s.from * by, s.to * by, s.radius * by);
+        }
+        self
     }
 }
 

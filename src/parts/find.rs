@@ -2,10 +2,11 @@
 
 use super::above;
 use super::base::{self, Kind};
-use super::chair::{Arm, Back, Base, Chair, Column, Leg, Seat};
-use super::legs::Track;
+use super::chair::{Arm, Back, Base, Chair, Column, Leg, Seat, Stretcher};
+use super::legs::{self, Track};
 use super::mirror::{Mirror, Plane};
 use super::seat;
+use super::stretchers;
 use super::volume::{Stand, Volume};
 use crate::field::Field;
 use crate::grid::Lattice;
@@ -20,6 +21,8 @@ const COARSE: f64 = 60.0;
 const FINE: f64 = 90.0;
 /// Turns nearer than this to a quarter turn are made one, radians.
 const SNAP: f64 = 2.0 * PI / 180.0;
+/// Least side of a seat, a share of the height. Lower, poles are seats; bar stools have 0.3.
+const SLIM: f64 = 0.15;
 
 /// A shape looked at.
 pub(super) struct Look {
@@ -36,8 +39,7 @@ pub(super) struct Look {
 /// Looks at a shape; none when it is empty or without bounds.
 pub(super) fn look(field: &dyn Field, job: &dyn Job) -> Result<Option<Look>, Cancelled> {
     let Some((coarse, floor, top)) = coarse(field, job)? else { return Ok(None) };
-    let stand = stand(&coarse, floor, top, &field.support());
-    let (stand, score) = stand;
+    let (stand, score) = stand(&coarse, floor, top, &field.support());
     let matter = coarse.solids().map(|p| stand.point(coarse.point(p)));
     let bounds = Aabb::of(matter);
     let lattice = lattice(&bounds);
@@ -49,17 +51,15 @@ pub(super) fn look(field: &dyn Field, job: &dyn Job) -> Result<Option<Look>, Can
 }
 
 /// A first look at the shape where it is, with its lowest and highest levels.
-fn coarse(
-    field: &dyn Field,
-    job: &dyn Job,
-) -> Result<Option<(Volume, usize, usize)>, Cancelled> {
+fn coarse(field: &dyn Field, job: &dyn Job) -> Result<Option<(Volume, usize, usize)>, Cancelled> {
     let mut space = field.support();
     for _ in 0..3 {
         let longest = space.size().max_element();
         if space.is_empty() || !space.is_finite() || longest <= 0.0 {
             return Ok(None);
         }
-        let v = Volume::sample(field, Stand::KEPT, Lattice::covering(&space, longest / COARSE), job)?;
+        let v =
+            Volume::sample(field, Stand::KEPT, Lattice::covering(&space, longest / COARSE), job)?;
         let matter = Aabb::of(v.solids().map(|p| v.point(p)));
         if matter.is_empty() {
             return Ok(None);
@@ -82,8 +82,7 @@ fn lattice(bounds: &Aabb) -> Lattice {
     let across = (half / step).ceil() + ROOM;
     let deep = (size.y / step).ceil() + 2.0 * ROOM;
     let high = (size.z / step).ceil() + 2.0 * ROOM;
-    let origin =
-        DVec3::new(-across, bounds.centre().y / step - 0.5 * deep, 0.5 - ROOM) * step;
+    let origin = DVec3::new(-across, bounds.centre().y / step - 0.5 * deep, 0.5 - ROOM) * step;
     let size = [2.0 * across, deep, high].map(|n| n as u32 + 1);
     Lattice { origin, step, size }
 }
@@ -122,7 +121,8 @@ fn stand(v: &Volume, floor: usize, top: usize, support: &Aabb) -> (Stand, f64) {
     } else {
         matter.centre().y
     };
-    (Stand { turn, shift: -DVec3::new(x, y, z) }, plane.score)
+    // never minus nought
+    (Stand { turn: turn + 0.0, shift: DVec3::ZERO - DVec3::new(x, y, z) }, plane.score)
 }
 
 /// The mirror plane to stand by: the best one, unless it cuts the back in two.
@@ -144,7 +144,9 @@ fn choose(v: &Volume, mirror: &Mirror, seat: Option<f64>, back: Option<DVec2>) -
         if a.score > best.score {
             (best, other) = (near(a), near(b));
         }
-        if best.score - other.score < 0.10 && best.score - 0.25 * across(&best) < other.score - 0.25 * across(&other) {
+        if best.score - other.score < 0.10
+            && best.score - 0.25 * across(&best) < other.score - 0.25 * across(&other)
+        {
             (best, other) = (other, best);
         }
     }
@@ -163,9 +165,16 @@ fn parts(
     let Some(seat) = seat::find(v, floor, top) else {
         return (None, vec!["no seat was found".to_owned()]);
     };
+    let tall = (top - floor + 1) as f64;
+    if seat.area.sqrt() < SLIM * tall {
+        return (None, vec!["too slim to sit on".to_owned()]);
+    }
     let base = base::find(v, &seat, floor, top);
     let middle = -v.lattice.origin.x / v.lattice.step;
     let (back, arms) = above::find(v, &seat, middle, floor, top);
+    if matches!(base.kind, Kind::Solid) && back.is_none() {
+        return (None, vec!["a body without parts".to_owned()]);
+    }
     let size = bounds.size();
     let flat = size.z / size.x.max(size.y);
     if flat < 0.75 {
@@ -202,6 +211,7 @@ fn parts(
     };
     let sure = [sure_mirror, sure_seat, base.agree.clamp(0.0, 1.0)];
     let chair = Chair {
+        stretchers: bars(v, &base, seat.under, floor),
         base: stand_on(v, &base, &place),
         seat: place,
         back: back.map(|b| back_place(v, &b)),
@@ -230,6 +240,26 @@ fn arm_place(v: &Volume, a: &above::Arm) -> Arm {
     Arm { low: place(a.low), high: place(a.high) }
 }
 
+fn bars(v: &Volume, base: &base::Base, under: usize, floor: usize) -> Vec<Stretcher> {
+    let Kind::Legs(tracks) = &base.kind else { return Vec::new() };
+    let low = floor as f64;
+    let feet: Vec<DVec2> = tracks.iter().map(|t| t.point(low)).collect();
+    let Some(order) = legs::quadrants(&feet) else { return Vec::new() };
+    if crossed(tracks, low, under as f64) {
+        return Vec::new();
+    }
+    let place = |p: DVec3| v.plan(p.truncate()).extend(v.height(p.z));
+    stretchers::find(v, order.map(|i| &tracks[i]), floor, under)
+        .into_iter()
+        .map(|b| Stretcher {
+            side: b.side,
+            from: place(b.from),
+            to: place(b.to),
+            radius: b.radius * v.lattice.step,
+        })
+        .collect()
+}
+
 fn stand_on(v: &Volume, base: &base::Base, seat: &Seat) -> Base {
     let step = v.lattice.step;
     let floor = -v.lattice.origin.z / step;
@@ -238,8 +268,9 @@ fn stand_on(v: &Volume, base: &base::Base, seat: &Seat) -> Base {
     let leg = |t: &Track| Leg {
         foot: v.plan(t.point(floor)).extend(0.0),
         head: v.plan(t.point(head)).extend(board),
-        radius: t.radius * step,
-        reach: t.reach * step,
+        // samples half a step outside count as solid
+        radius: (t.radius - 0.5).max(0.5) * step,
+        reach: (t.reach - 0.5).max(0.5) * step,
     };
     let legs = |tracks: &[Track]| {
         let mut legs: Vec<Leg> = tracks.iter().map(leg).collect();
@@ -250,6 +281,7 @@ fn stand_on(v: &Volume, base: &base::Base, seat: &Seat) -> Base {
     match &base.kind {
         Kind::Legs(t) if crossed(t, floor, head) => Base::Crossed(legs(t)),
         Kind::Legs(t) => Base::Legs(legs(t)),
+        Kind::Sled(t) if crossed(t, floor, head) => Base::Crossed(legs(t)),
         Kind::Sled(t) => Base::Sled(legs(t)),
         Kind::Cantilever(t) => Base::Cantilever(legs(t)),
         Kind::Disc | Kind::Star(_) => Base::Column(Column {
@@ -266,10 +298,10 @@ fn stand_on(v: &Volume, base: &base::Base, seat: &Seat) -> Base {
     }
 }
 
-/// How far a leg stands round the seat's centre, clockwise seen from above, from straight ahead on:
+/// How far a leg's foot stands round the seat's centre, clockwise seen from above, from straight ahead on:
 /// the front left leg comes first.
 fn turn_of(leg: &Leg, centre: DVec2) -> f64 {
-    let d = (0.5 * (leg.foot + leg.head)).truncate() - centre;
+    let d = leg.foot.truncate() - centre;
     (-d.y.atan2(d.x) - PI / 2.0).rem_euclid(2.0 * PI)
 }
 

@@ -1,6 +1,6 @@
 //! Elements round the parts of one chair.
 
-use super::chair::{Arm, Back, Base, Chair, Column, Leg, Seat};
+use super::chair::{Arm, Back, Base, Chair, Column, Leg, Seat, Stretcher};
 use crate::element::{Element, ElementError};
 use glam::{DQuat, DVec2, DVec3};
 
@@ -9,6 +9,8 @@ const ROOM: f64 = 3.0;
 /// Radius of a leg's element over that of the leg. Tighter, bent legs leave it; looser, the element
 /// reaches into its neighbours.
 const LOOSE: f64 = 1.15;
+/// How far a leg's element reaches into the board, mm: a gap between the two would tear.
+const OVERLAP: f64 = 4.0;
 
 /// The board of the seat alone.
 pub(super) fn seat(s: &Seat) -> Result<Element, ElementError> {
@@ -34,7 +36,13 @@ pub(super) fn back(s: &Seat, b: &Back) -> Result<Element, ElementError> {
 
 /// A leg from the floor to the board.
 pub(super) fn leg(l: &Leg) -> Result<Element, ElementError> {
-    Element::rod(l.foot, l.head, l.reach.min(2.0 * l.radius) * LOOSE + ROOM)
+    let head = l.head + (l.head - l.foot).normalize_or_zero() * OVERLAP;
+    Element::rod(l.foot, head, l.reach.min(2.0 * l.radius) * LOOSE + ROOM)
+}
+
+/// A bar between legs.
+pub(super) fn stretcher(s: &Stretcher) -> Result<Element, ElementError> {
+    Element::rod(s.from, s.to, s.radius * LOOSE + ROOM)
 }
 
 /// An arm with what carries it above the seat.
@@ -51,6 +59,17 @@ pub(super) fn block(low: DVec3, high: DVec3) -> Result<Element, ElementError> {
 pub(super) fn slice(c: &Column, to: DVec2, low: f64, high: f64) -> Result<Element, ElementError> {
     let at = c.axis + 0.5 * c.radius * to;
     Element::rod(at.extend(low), at.extend(high.max(low + 1.0)), 0.5 * c.radius + ROOM)
+}
+
+/// All of a column.
+pub(super) fn shaft(c: &Column, low: f64, high: f64) -> Result<Element, ElementError> {
+    Element::rod(c.axis.extend(low), c.axis.extend(high.max(low + 1.0)), c.radius * LOOSE + ROOM)
+}
+
+/// All that a column stands on.
+pub(super) fn disc(c: &Column) -> Result<Element, ElementError> {
+    let reach = DVec2::splat(c.reach);
+    block((c.axis - reach).extend(0.0) - ROOM, (c.axis + reach).extend(c.hub.max(5.0)) + ROOM)
 }
 
 /// The spoke that stands for a foot in a direction, or a bar of the disc.
@@ -81,11 +100,7 @@ pub(super) fn struts(base: &Base) -> &[Leg] {
 
 /// An element moved from the seat of one chair to that of another: where a part would be on a
 /// chair that has none.
-pub(super) fn transplanted(
-    e: &Element,
-    from: &Chair,
-    to: &Chair,
-) -> Result<Element, ElementError> {
+pub(super) fn transplanted(e: &Element, from: &Chair, to: &Chair) -> Result<Element, ElementError> {
     let (a, b) = (&from.seat, &to.seat);
     let middle = |s: &Seat| (0.5 * (s.low + s.high)).extend(s.top);
     let ratio = ((b.high - b.low) / (a.high - a.low).max(DVec2::ONE)).extend(1.0);

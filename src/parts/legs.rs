@@ -63,12 +63,10 @@ fn tracks(levels: &[Level], count: usize, floor: usize, high: f64) -> Vec<Track>
     seeds
         .iter()
         .map(|seed| {
-            let spot =
-                Spot { z: levels[middle].k as f64, at: seed.centre(), area: seed.area() };
+            let spot = Spot { z: levels[middle].k as f64, at: seed.centre(), area: seed.area() };
             let up = follow(levels, spot, middle + 1..levels.len(), high);
             let down = follow(levels, spot, (0..middle).rev(), high);
-            let spots: Vec<Spot> =
-                down.iter().rev().chain([&spot]).chain(&up).copied().collect();
+            let spots: Vec<Spot> = down.iter().rev().chain([&spot]).chain(&up).copied().collect();
             fit(&spots, floor)
         })
         .collect()
@@ -150,4 +148,15 @@ fn fit(spots: &[Spot], floor: usize) -> Track {
     track.radius = median(&radii);
     track.reach = quantile(&reach, 0.9);
     track
+}
+
+/// Which of four places in the plan is front left, front right, back left, back right: the two
+/// foremost first, then by side.
+pub(super) fn quadrants(feet: &[DVec2]) -> Option<[usize; 4]> {
+    let mut by_y: Vec<usize> = (0..feet.len()).collect();
+    by_y.sort_by(|a, b| feet[*a].y.total_cmp(&feet[*b].y));
+    let [a, b, c, d] = <[usize; 4]>::try_from(by_y).ok()?;
+    let by_x = |a: usize, b: usize| if feet[a].x <= feet[b].x { [a, b] } else { [b, a] };
+    let ([fl, fr], [bl, br]) = (by_x(a, b), by_x(c, d));
+    Some([fl, fr, bl, br])
 }

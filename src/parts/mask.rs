@@ -55,7 +55,7 @@ impl Mask {
     }
 
     /// Every cell within `radius` of a cell that is on.
-    fn dilated(&self, radius: f64) -> Mask {
+    pub fn dilated(&self, radius: f64) -> Mask {
         let mut out = Self::empty(self.nx, self.ny);
         let disc = disc(radius);
         for [x, y] in self.cells() {
@@ -73,21 +73,27 @@ impl Mask {
 
     /// Gaps narrower than twice the radius filled.
     pub fn closed(&self, radius: f64) -> Mask {
-        self.dilated(radius).inverse().dilated(radius).inverse()
-    }
-
-    /// Without the cells nearer to the border than the radius.
-    pub fn eroded(&self, radius: f64) -> Mask {
-        self.inverse().dilated(radius).inverse()
+        let wide = self.dilated(radius);
+        let disc = disc(radius);
+        let mut out = Self::empty(self.nx, self.ny);
+        for [x, y] in wide.cells() {
+            // what lies beyond the picture does not wear the border down
+            let kept = disc.iter().all(|&[dx, dy]| {
+                let (x, y) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
+                x >= self.nx || y >= self.ny || wide.get(x, y)
+            });
+            if kept {
+                out.set(x, y);
+            }
+        }
+        out
     }
 
     /// With the holes that nothing leads out of filled.
     pub fn filled(&self) -> Mask {
         let mut outside = Self::empty(self.nx, self.ny);
         let mut open = Vec::new();
-        let border = |x: usize, y: usize| {
-            x == 0 || y == 0 || x + 1 == self.nx || y + 1 == self.ny
-        };
+        let border = |x: usize, y: usize| x == 0 || y == 0 || x + 1 == self.nx || y + 1 == self.ny;
         for y in 0..self.ny {
             for x in 0..self.nx {
                 if border(x, y) && !self.get(x, y) {
@@ -147,15 +153,6 @@ fn disc(radius: f64) -> Vec<[isize; 2]> {
     (-r..=r).flat_map(|y| (-r..=r).map(move |x| [x, y])).filter(within).collect()
 }
 
-/// Centre and spread of some cells.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Spread {
-    /// Direction of the longer axis.
-    pub along: DVec2,
-    /// Extent along and across it, in cells.
-    pub size: DVec2,
-}
-
 impl Region {
     pub fn area(&self) -> f64 {
         self.cells.len() as f64
@@ -182,8 +179,8 @@ impl Region {
         high - low + 1.0
     }
 
-    /// Principal axes.
-    pub fn spread(&self) -> Spread {
+    /// Extent along the longer principal axis and across it, in cells.
+    pub fn spread(&self) -> DVec2 {
         let c = self.centre();
         let mut m = DMat2::ZERO;
         for p in self.points() {
@@ -194,13 +191,13 @@ impl Region {
         let along = DVec2::from_angle(angle);
         let across = along.perp();
         let reach = |axis: DVec2| {
-            let (lo, hi) = self.points().map(|p| p.dot(axis)).fold(
-                (f64::INFINITY, f64::NEG_INFINITY),
-                |(lo, hi), x| (lo.min(x), hi.max(x)),
-            );
+            let (lo, hi) = self
+                .points()
+                .map(|p| p.dot(axis))
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)));
             hi - lo + 1.0
         };
-        Spread { along, size: DVec2::new(reach(along), reach(across)) }
+        DVec2::new(reach(along), reach(across))
     }
 
     /// Share of a disc round the region's own centre that it covers.

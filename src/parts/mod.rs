@@ -10,7 +10,22 @@
 //! - A *base* is what carries the seat: legs, a column, runners, or a solid body.
 //! - *Confidence* is a number in [0, 1]; below [`DOUBTFUL`] the suggestion is a guess.
 //!
-//! What is no chair gets three slabs from top to bottom, with a low confidence.
+//! What is no chair gets three slabs from bottom to top, with a low confidence.
+//!
+//! ```
+//! use fieldgraft::{element::Element, field::csg::Join, field::solid::{Assembly, Part}, job::Quiet, parts};
+//! let rod = |x: f64, y: f64, top: f64, r| Element::rod([x, y, 0.0].into(), [x, y, top].into(), r);
+//! let mut stool = vec![Element::rod([0.0, 0.0, 430.0].into(), [0.0, 0.0, 460.0].into(), 190.0)?];
+//! for (x, y) in [(-110.0, -110.0), (110.0, -110.0), (-110.0, 110.0), (110.0, 110.0)] {
+//!     stool.push(rod(x, y, 435.0, 18.0)?);
+//! }
+//! let part = |element| Part { element, round: 0.0, join: Join::Add };
+//! let stool = Assembly::new(&stool.into_iter().map(part).collect::<Vec<_>>())?;
+//! let found = parts::suggest(&[("stool", &stool)], &Quiet)?;
+//! assert!(found.shapes[0].chair.as_ref().is_some_and(|c| (c.seat.top - 460.0).abs() < 10.0));
+//! assert_eq!(found.features.len(), 5, "the seat and four legs");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod above;
 mod base;
@@ -23,10 +38,14 @@ mod mirror;
 mod pair;
 mod seat;
 mod slabs;
+mod stretchers;
 mod volume;
 
+#[cfg(test)]
+mod tests;
 
-pub use chair::{Arm, Back, Base, Chair, Column, Leg, Pose, Seat};
+pub use chair::{Arm, Back, Base, Chair, Column, Leg, Pose, Seat, Stretcher};
+pub use stretchers::Side;
 
 use crate::element::Element;
 use crate::field::Field;
@@ -92,14 +111,12 @@ pub enum Note {
     Slab,
 }
 
-/// Suggests poses and features for some shapes, named and given as fields in mm, z up.
+/// Suggests poses and features for some shapes, named and given as fields in mm, z up. Each is looked
+/// up some hundred thousand times: a sampled form is much quicker than a mesh.
 ///
 /// # Errors
 /// Cancelled.
-pub fn suggest(
-    shapes: &[(&str, &dyn Field)],
-    job: &dyn Job,
-) -> Result<Suggestion, Cancelled> {
+pub fn suggest(shapes: &[(&str, &dyn Field)], job: &dyn Job) -> Result<Suggestion, Cancelled> {
     let mut guesses = Vec::with_capacity(shapes.len());
     for (name, field) in shapes {
         guesses.push(guess(name, find::look(*field, job)?));
@@ -135,8 +152,27 @@ fn guess(name: &str, look: Option<Look>) -> Guess {
     }
 }
 
-/// Sizes are kept; chairs of other scales need `height` first.
-fn scale(_guesses: &mut [Guess]) {}
+/// Seat heights that chairs have, mm.
+const SEATS: std::ops::RangeInclusive<f64> = 150.0..=1000.0;
+/// Height given to a seat when no chair tells another, mm.
+const SEAT: f64 = 450.0;
+
+/// Sizes are kept where a seat is at a height that chairs have. Others are taken for a wrong unit: they
+/// are scaled to the seat height of the first chair of a usual size.
+fn scale(guesses: &mut [Guess]) {
+    let seat = |g: &Guess| g.chair.as_ref().map(|c| c.seat.top);
+    let usual = guesses.iter().filter_map(seat).find(|z| SEATS.contains(z)).unwrap_or(SEAT);
+    for g in guesses {
+        let Some(top) = seat(g).filter(|z| !SEATS.contains(z) && *z > 0.0) else { continue };
+        let by = usual / top;
+        g.chair = g.chair.take().map(|c| c.scaled(by));
+        g.bounds = Aabb::new(g.bounds.min * by, g.bounds.max * by);
+        (g.pose.scale, g.pose.shift) = (by, g.pose.shift * by);
+        g.warnings.push(format!(
+            "the seat would be {top:.4} mm high; scaled to {usual:.0} mm: is the unit right?"
+        ));
+    }
+}
 
 fn features(guesses: &[Guess]) -> Vec<Paired> {
     let chairs: Option<Vec<&Chair>> = guesses.iter().map(|g| g.chair.as_ref()).collect();

@@ -1,7 +1,9 @@
 //! The parts of several chairs brought into correspondence.
 
-use super::chair::{Base, Chair, Leg};
+use super::chair::{Base, Chair, Leg, Stretcher};
 use super::fit;
+use super::legs;
+use super::stretchers::Side;
 use super::{Note, Paired};
 use crate::element::{Element, ElementError};
 use glam::{DVec2, DVec3};
@@ -23,7 +25,12 @@ pub(super) fn pair(chairs: &[&Chair]) -> Vec<Paired> {
             all.push(Paired { name, elements, confidence: sure, note });
         }
     };
-    put("seat".to_owned(), chairs.iter().map(|c| fit::seat(&c.seat)).collect(), sure(1), Note::Found);
+    put(
+        "seat".to_owned(),
+        chairs.iter().map(|c| fit::seat(&c.seat)).collect(),
+        sure(1),
+        Note::Found,
+    );
     let backs = |c: &Chair| c.back.map(|b| fit::back(&c.seat, &b));
     if let Some((elements, note)) = shared(chairs, backs) {
         put("back".to_owned(), elements, sure(0), note);
@@ -39,11 +46,39 @@ pub(super) fn pair(chairs: &[&Chair]) -> Vec<Paired> {
         let legs = |part: Part| chairs.iter().map(|c| strut(c, &slot, part)).collect();
         let name = |what: &str| format!("{what} {}", slot.name).trim_end().to_owned();
         if column {
-            put(name("leg"), legs(Part::Upper), sure(2), Note::Bundle);
+            let what = if slot.name.is_empty() { "column" } else { "leg" };
+            put(name(what), legs(Part::Upper), sure(2), Note::Bundle);
             put(name("foot"), legs(Part::Foot), sure(2), Note::Bundle);
         } else {
             let note = if mixed(chairs) { Note::Mixed } else { Note::Found };
             put(name("leg"), legs(Part::Whole), sure(2), note);
+        }
+    }
+    for (name, elements) in stretchers(chairs) {
+        put(name, elements, sure(2), Note::Found);
+    }
+    all
+}
+
+/// Stretchers that all chairs have, side by side, the lowest of each first.
+fn stretchers(chairs: &[&Chair]) -> Vec<(String, Result<Vec<Element>, ElementError>)> {
+    let mut all = Vec::new();
+    for (side, word) in [
+        (Side::Front, "front"),
+        (Side::Left, "left"),
+        (Side::Right, "right"),
+        (Side::Back, "back"),
+        (Side::Middle, "middle"),
+    ] {
+        let of = |c: &Chair| -> Vec<Stretcher> {
+            c.stretchers.iter().copied().filter(|s| s.side == side).collect()
+        };
+        let bars: Vec<Vec<Stretcher>> = chairs.iter().map(|c| of(c)).collect();
+        let count = bars.iter().map(Vec::len).min().unwrap_or(0);
+        for n in 0..count {
+            let more = if n > 0 { format!(" {}", n + 1) } else { String::new() };
+            let elements = bars.iter().map(|b| fit::stretcher(&b[n])).collect();
+            all.push((format!("stretcher {word}{more}"), elements));
         }
     }
     all
@@ -122,17 +157,21 @@ fn slots(chairs: &[&Chair]) -> Vec<Slot> {
     }
 }
 
-/// Direction of a leg from the middle of all legs' middles, as seen from the seat.
+/// Direction of a leg's foot from the middle of the seat.
 fn outward(leg: &Leg, chair: &Chair) -> DVec2 {
     let centre = 0.5 * (chair.seat.low + chair.seat.high);
     let size = (chair.seat.high - chair.seat.low).max(DVec2::ONE);
-    ((0.5 * (leg.foot + leg.head).truncate() - centre) / size).normalize_or_zero()
+    ((leg.foot.truncate() - centre) / size).normalize_or_zero()
 }
 
 /// The element of a chair that stands for the leg of a slot.
 fn strut(c: &Chair, slot: &Slot, part: Part) -> Result<Element, ElementError> {
     let board = c.seat.top - c.seat.thickness;
     match &c.base {
+        Base::Column(col) if slot.name.is_empty() && part == Part::Foot => fit::disc(col),
+        Base::Column(col) if slot.name.is_empty() && part == Part::Upper => {
+            fit::shaft(col, col.hub.min(0.8 * board), board)
+        }
         Base::Column(col) if part == Part::Foot => fit::spoke(col, slot.to),
         Base::Column(col) if part == Part::Upper => {
             fit::slice(col, slot.to, col.hub.min(0.8 * board), board)
@@ -143,10 +182,9 @@ fn strut(c: &Chair, slot: &Slot, part: Part) -> Result<Element, ElementError> {
         ),
         base => match matched(c, slot) {
             Some(leg) => fit::leg(&piece(&leg, part)),
-            None if matches!(base, Base::Solid) && slot.name.is_empty() => fit::block(
-                c.seat.low.extend(0.0),
-                c.seat.high.extend(board.max(1.0)),
-            ),
+            None if matches!(base, Base::Solid) && slot.name.is_empty() => {
+                fit::block(c.seat.low.extend(0.0), c.seat.high.extend(board.max(1.0)))
+            }
             None => {
                 let corner = fit::corner(&c.seat, slot.to)?;
                 let (low, high) = (corner.centre - corner.half, corner.centre + corner.half);
@@ -177,7 +215,8 @@ fn matched(c: &Chair, slot: &Slot) -> Option<Leg> {
     let near = |l: &&Leg| outward(l, c).dot(slot.to);
     if legs.len() == 4 {
         // by order, not by angle: legs that cross or splay keep their names
-        let order = quadrants(legs);
+        let feet: Vec<DVec2> = legs.iter().map(|l| l.foot.truncate()).collect();
+        let order = legs::quadrants(&feet);
         let i = usize::from(slot.to.x > 0.0) + 2 * usize::from(slot.to.y > 0.0);
         if slot.to.x != 0.0 && slot.to.y != 0.0 {
             return order.map(|o| legs[o[i]]);
@@ -196,18 +235,4 @@ fn matched(c: &Chair, slot: &Slot) -> Option<Leg> {
         reach: leg.reach - 0.5 * leg.radius,
     };
     Some(half)
-}
-
-/// Which of four legs stands front left, front right, back left, back right: the two foremost by
-/// their middles, then by side.
-fn quadrants(legs: &[Leg]) -> Option<[usize; 4]> {
-    let middle = |i: &usize| 0.5 * (legs[*i].foot + legs[*i].head);
-    let mut by_y: Vec<usize> = (0..legs.len()).collect();
-    by_y.sort_by(|a, b| middle(a).y.total_cmp(&middle(b).y));
-    let [a, b, c, d] = <[usize; 4]>::try_from(by_y).ok()?;
-    let by_x = |a: usize, b: usize| {
-        if middle(&a).x <= middle(&b).x { [a, b] } else { [b, a] }
-    };
-    let ([fl, fr], [bl, br]) = (by_x(a, b), by_x(c, d));
-    Some([fl, fr, bl, br])
 }

@@ -5,7 +5,7 @@ use crate::num::Aabb;
 
 /// Three slabs of each box, or one of the whole where a box is flat; none round nothing.
 pub(super) fn slabs(boxes: &[Aabb]) -> Vec<Paired> {
-    if boxes.iter().any(|b| b.is_empty() || !b.is_finite()) {
+    if boxes.is_empty() || boxes.iter().any(|b| b.is_empty() || !b.is_finite()) {
         return Vec::new();
     }
     let flat = |b: &Aabb| b.size().z < 0.2 * b.size().x.max(b.size().y);

@@ -92,18 +92,23 @@ impl Image {
 /// # Errors
 /// [`PictureError::Exists`] without `force` when the file is there, [`PictureError::Write`].
 pub fn save_png(path: &Path, image: &Image, force: bool) -> Result<(), PictureError> {
-    let exists = || PictureError::Exists(path.to_owned());
     if !force && path.symlink_metadata().is_ok() {
-        return Err(exists());
+        return Err(PictureError::Exists(path.to_owned()));
     }
-    write(path, image, force).map_err(|source| match source.kind() {
-        io::ErrorKind::AlreadyExists if !force => exists(),
+    let bytes =
+        image.to_png().map_err(|source| PictureError::Write { path: path.to_owned(), source })?;
+    place(path, &[&bytes], force)
+}
+
+/// Puts a file in place whole.
+pub(super) fn place(path: &Path, parts: &[&[u8]], force: bool) -> Result<(), PictureError> {
+    write(path, parts, force).map_err(|source| match source.kind() {
+        io::ErrorKind::AlreadyExists if !force => PictureError::Exists(path.to_owned()),
         _ => PictureError::Write { path: path.to_owned(), source },
     })
 }
 
-fn write(path: &Path, image: &Image, force: bool) -> io::Result<()> {
-    let bytes = image.to_png()?;
+fn write(path: &Path, parts: &[&[u8]], force: bool) -> io::Result<()> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -113,7 +118,9 @@ fn write(path: &Path, image: &Image, force: bool) -> io::Result<()> {
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = builder.tempfile_in(folder)?;
-    file.write_all(&bytes)?;
+    for part in parts {
+        file.write_all(part)?;
+    }
     if force { file.persist(path) } else { file.persist_noclobber(path) }?;
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Shaded pictures of meshes, drawn on the CPU, and sheets of many of them.
+//! Shaded pictures of meshes, drawn on the CPU, sheets of many of them, and moving pictures.
 //!
 //! Words: a *view* is where the camera stands (Z is up, the front looks to -Y); a *frame* is the
 //! box the camera is fitted to, so that meshes drawn with one frame have one scale; a *sample*
@@ -21,6 +21,7 @@
 //! # Ok::<(), picture::PictureError>(())
 //! ```
 
+mod animation;
 mod camera;
 mod depth_map;
 mod font;
@@ -33,6 +34,7 @@ mod scene;
 mod shade;
 mod sheet;
 
+pub use animation::{Film, is_animation};
 pub use camera::View;
 pub use image::{Image, save_png};
 pub use sheet::{Cell, Layout, sheet};
@@ -87,6 +89,19 @@ pub enum PictureError {
         /// Height asked for.
         height: u32,
     },
+    /// A film has frames of one size.
+    #[error("a frame of {width} x {height} pixels cannot follow frames of {} x {}", film[0], film[1])]
+    Frame {
+        /// Its width.
+        width: u32,
+        /// Its height.
+        height: u32,
+        /// Width and height of those before.
+        film: [u32; 2],
+    },
+    /// No such picture can move.
+    #[error("{}: moving pictures are gif or webp, and have frames", .0.display())]
+    Film(PathBuf),
     /// The file is there already.
     #[error("{} exists already", .0.display())]
     Exists(PathBuf),

@@ -62,6 +62,9 @@ pub struct MorphEntry {
     /// Parameters of space-time blending.
     #[serde(rename = "space-time", default, skip_serializing_if = "Option::is_none")]
     pub space_time: Option<SpaceTimeEntry>,
+    /// Parameters of optimal transport.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transport: Option<TransportEntry>,
 }
 
 /// Methods of metamorphosis.
@@ -78,6 +81,14 @@ pub enum MethodEntry {
     Graft,
     /// Features of any number of shapes (paper 001, eq. 8).
     Group,
+    /// The source's surface moves into the target's (Breen and Whitaker 2001); two shapes that
+    /// overlap.
+    LevelSet,
+    /// The shapes' matter is moved over the shortest way (Solomon et al. 2015).
+    Transport,
+    /// The shapes are pulled onto common anchors, those of features or `[[anchors]]`, and averaged
+    /// (Cohen-Or et al. 1998).
+    Warp,
     /// Graft or group with parameters chosen by a search; features are suggested where the recipe has
     /// none, and where no parts are found it is space-time. One shape alone as it is.
     #[default]
@@ -205,6 +216,20 @@ pub struct SpaceTimeEntry {
     pub form: Option<FormEntry>,
 }
 
+/// Parameters of optimal transport.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TransportEntry {
+    /// Samples along the longest side of its own lattice, 16 to 256; by default 96.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<u32>,
+}
+
+impl TransportEntry {
+    /// Samples unless told.
+    pub const SAMPLES: u32 = 96;
+}
+
 /// One number for all shapes, or one a shape.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "expected a number or a list of numbers")]
@@ -254,6 +279,7 @@ impl MorphEntry {
             deform_weights: rows(&self.deform_weights, &base.deform_weights),
             parts: over_parts(&self.parts, &base.parts),
             space_time: self.space_time.clone().or_else(|| base.space_time.clone()),
+            transport: self.transport.clone().or_else(|| base.transport.clone()),
         }
     }
 
@@ -286,6 +312,12 @@ impl MorphEntry {
             let at = join(&format!("{at}.parts"), feature);
             known_feature(feature, &[], &at, recipe)?;
             finite(&[part.offset.unwrap_or(0.0)], &format!("{at}.offset"))?;
+        }
+        if let Some(samples) = self.transport.as_ref().and_then(|t| t.samples)
+            && !(16..=256).contains(&samples)
+        {
+            let why = format!("got {samples}; expected 16 to 256");
+            return Err(Problem::new(format!("{at}.transport.samples"), why));
         }
         self.space_time.as_ref().map_or(Ok(()), |s| s.validate(&format!("{at}.space-time")))
     }

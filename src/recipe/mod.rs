@@ -4,6 +4,7 @@
 //! nearest known key. Lengths are millimetres, angles degrees, t in [0, 1]. Everything here is
 //! plain data as typed; the `scene` makes objects of it.
 
+mod anchors;
 mod features;
 mod json;
 mod method;
@@ -17,12 +18,13 @@ mod time;
 mod value;
 
 pub use crate::num::near::{did_you_mean, nearest};
+pub use anchors::AnchorEntry;
 pub use features::{ElementEntry, ElementShape, FeatureEntry, FeatureMorph, MeshShape};
 pub use method::{
     BlendEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry, OneOrMany, SpaceTimeEntry,
-    StyleEntry, WeightingEntry, WeightingKind, Weights,
+    StyleEntry, TransportEntry, WeightingEntry, WeightingKind, Weights,
 };
-pub use output::{GridEntry, MesherEntry, OutputEntry};
+pub use output::{GridEntry, MesherEntry, NameOrNames, OutputEntry};
 pub use primitive::{BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Primitive, PrismShape};
 pub use shapes::{
     CurveEntry, LengthUnit, Place, PlaceLike, ShapeEntry, SignEntry, SkinEntry, ThickenEntry,
@@ -62,6 +64,9 @@ pub struct Recipe {
     /// Features that stand on the shapes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub features: Vec<FeatureEntry>,
+    /// Points that correspond, for `method = "warp"`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub anchors: Vec<AnchorEntry>,
     /// How the shapes become one.
     #[serde(default, skip_serializing_if = "primitive::is_default")]
     pub morph: MorphEntry,
@@ -115,6 +120,7 @@ impl Recipe {
         }
         self.grid.validate()?;
         features::validate(&self.features, &self.shapes)?;
+        anchors::validate(&self.anchors, &self.shapes)?;
         if !self.morph.name.is_empty() {
             return Err(Problem::new("morph.name", "only hybrids have a name; remove it"));
         }

@@ -65,6 +65,17 @@ pub struct OutputEntry {
     /// Picture file, PNG; none unless given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub picture: Option<String>,
+    /// Files that play the frames of a hybrid in the order of t, each frame for the same time: a
+    /// moving picture (WEBP, with all colours; GIF, with 256) or a GLB of the meshes in turn. A
+    /// name or a list; none unless given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub animation: Option<NameOrNames>,
+    /// Frames a second of an animation, 0.1 to 50; by default 8.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fps: Option<f64>,
+    /// Whether an animation runs back from the last frame to the first; by default it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ping_pong: Option<bool>,
     /// Loose pieces with less than this share of the volume are dropped and reported; by default
     /// 0.02 for graft and group, 0 for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -72,6 +83,26 @@ pub struct OutputEntry {
     /// Which mesher; by default `print`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub mesher: MesherEntry,
+}
+
+/// One file, or several.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "expected a file name or a list of file names")]
+pub enum NameOrNames {
+    /// One.
+    One(String),
+    /// Several.
+    Many(Vec<String>),
+}
+
+impl NameOrNames {
+    /// All of them.
+    pub fn all(&self) -> &[String] {
+        match self {
+            Self::One(name) => std::slice::from_ref(name),
+            Self::Many(names) => names,
+        }
+    }
 }
 
 /// How samples become triangles.
@@ -94,10 +125,57 @@ impl OutputEntry {
                 template(name, &format!("output.{key}"))?;
             }
         }
+        self.validate_animation()?;
         match self.crumbs {
             Some(c) if !(0.0..1.0).contains(&c) => {
                 let why = format!("got {c}; expected a share of the volume, 0 to below 1");
                 Err(Problem::new("output.crumbs", why))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What an animation's name may end in.
+const MOVING: [&str; 3] = ["webp", "gif", "glb"];
+
+impl OutputEntry {
+    /// Frames a second, when the recipe says nothing.
+    pub const FPS: f64 = 8.0;
+
+    /// The animations' names.
+    pub fn animations(&self) -> &[String] {
+        self.animation.as_ref().map_or(&[], NameOrNames::all)
+    }
+
+    fn validate_animation(&self) -> Result<(), Problem> {
+        let mut seen: Vec<String> = vec![];
+        for (i, name) in self.animations().iter().enumerate() {
+            let at = match &self.animation {
+                Some(NameOrNames::Many(_)) => format!("output.animation[{i}]"),
+                _ => "output.animation".to_owned(),
+            };
+            template(name, &at)?;
+            if name.contains("{t}") {
+                let why = format!("got `{name}`; one file has all times, so no {{t}}");
+                return Err(Problem::new(at, why));
+            }
+            let kind = name.rsplit_once('.').map_or("", |(_, kind)| kind).to_ascii_lowercase();
+            if !MOVING.contains(&kind.as_str()) {
+                let why = format!("got `{name}`; expected a name that ends in .webp, .gif or .glb");
+                return Err(Problem::new(at, why));
+            }
+            if seen.contains(&kind) {
+                let why = format!("got `{name}`; there is another .{kind} already");
+                return Err(Problem::new(at, why));
+            }
+            seen.push(kind);
+        }
+        match self.fps {
+            // a GIF counts hundredths of a second, and viewers slow down what takes fewer than two
+            Some(fps) if !(0.1..=50.0).contains(&fps) => {
+                let why = format!("got {fps}; expected 0.1 to 50 frames a second");
+                Err(Problem::new("output.fps", why))
             }
             _ => Ok(()),
         }

@@ -1,6 +1,6 @@
 //! Names of results, and text files put in place whole.
 
-use super::{RunError, folder};
+use super::{MOST_FRAMES, RunError, folder};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
@@ -15,6 +15,8 @@ pub struct Names {
     pub mesh: String,
     /// The picture, if any.
     pub picture: Option<String>,
+    /// Files that play the frames of a hybrid; each has the place of no time.
+    pub animations: Vec<String>,
     /// The report.
     pub report: String,
     /// What stands for the name of a hybrid that has none.
@@ -32,6 +34,11 @@ impl Names {
         self.picture.as_ref().map(|p| self.fill(p, hybrid, t))
     }
 
+    /// The animations of a hybrid.
+    pub fn animations(&self, hybrid: &str) -> Vec<PathBuf> {
+        self.animations.iter().map(|name| self.fill(name, hybrid, 0.0)).collect()
+    }
+
     /// The report.
     pub fn report(&self) -> PathBuf {
         self.folder.join(&self.report)
@@ -47,13 +54,24 @@ impl Names {
     /// Whether each frame (hybrid's name, time) has files of its own that may be written.
     ///
     /// # Errors
-    /// The first file that several share, or that is there already and not to be overwritten.
+    /// The first file that several share, or that is there already and not to be overwritten; an
+    /// animation of more than [`MOST_FRAMES`] frames.
     pub fn check(&self, frames: &[(String, f64)], force: bool) -> Result<(), RunError> {
         let mut count: BTreeMap<PathBuf, usize> = BTreeMap::new();
         for (hybrid, t) in frames {
             *count.entry(self.mesh(hybrid, *t)).or_default() += 1;
             if let Some(picture) = self.picture(hybrid, *t) {
                 *count.entry(picture).or_default() += 1;
+            }
+        }
+        let mut lengths: BTreeMap<&str, usize> = BTreeMap::new();
+        frames.iter().for_each(|(hybrid, _)| *lengths.entry(hybrid).or_default() += 1);
+        for (hybrid, frames) in lengths {
+            for file in self.animations(hybrid) {
+                if frames > MOST_FRAMES {
+                    return Err(RunError::Frames { file, frames });
+                }
+                *count.entry(file).or_default() += 1;
             }
         }
         *count.entry(self.report()).or_default() += 1;
@@ -115,6 +133,7 @@ mod tests {
             folder: PathBuf::from("out"),
             mesh: "{name}-{t}.stl".to_owned(),
             picture: Some("{name}.png".to_owned()),
+            animations: vec![],
             report: "run.json".to_owned(),
             unnamed: "hybrid".to_owned(),
         }
@@ -133,6 +152,25 @@ mod tests {
         let e = names().check(&frames, false).unwrap_err().to_string();
         assert!(e.contains("a.png") && e.contains("2 results") && e.contains("{t}"), "{e}");
         assert!(names().check(&frames[..1], false).is_ok());
+    }
+
+    #[test]
+    fn an_animation_has_a_file_for_each_hybrid_and_not_too_many_frames() {
+        let mut n = names();
+        n.picture = None;
+        n.animations = vec!["{name}.glb".to_owned(), "all.webp".to_owned()];
+        assert_eq!(n.animations("a")[0], PathBuf::from("out/a.glb"));
+        let frames = |names: &[&str], count: usize| -> Vec<(String, f64)> {
+            let of = |name: &&str| (0..count).map(|i| (name.to_string(), i as f64)).collect();
+            names.iter().flat_map(|name| -> Vec<_> { of(name) }).collect()
+        };
+        n.check(&frames(&["a"], 3), false).unwrap();
+        let e = n.check(&frames(&["a", "b"], 3), false).unwrap_err().to_string();
+        assert!(e.contains("all.webp") && e.contains("2 results"), "{e}");
+        n.mesh = "{t}.glb".to_owned();
+        n.check(&frames(&["a"], MOST_FRAMES), false).unwrap();
+        let e = n.check(&frames(&["a"], MOST_FRAMES + 1), false).unwrap_err().to_string();
+        assert!(e.contains("a.glb") && e.contains("1001 frames"), "{e}");
     }
 
     #[test]

@@ -1,23 +1,26 @@
 //! Running a scene: each frame becomes a mesh, a file, perhaps a picture, and a line in the
 //! report that lies beside them.
 
+mod animation;
+pub mod compare;
 mod files;
 mod frame;
 mod predict;
 mod report;
 mod system;
 
+pub use animation::{AnimationReport, MOST_FRAMES, Playing, Reel, animation_memory};
 pub use files::{Names, place_text, time_word};
 pub use frame::{FrameResult, Work, make};
 pub use predict::{Prediction, coarsening, predict, predict_one, probe};
 pub use report::{FrameReport, Report, Seconds, ShapeReport};
-pub use system::{available_memory, peak_memory};
+pub use system::{Machine, available_memory, peak_memory, reset_peak};
 
 use crate::job::{Cancelled, Job};
 use crate::mesh::{self, MeshError};
 use crate::morph::MorphError;
 use crate::num::Aabb;
-use crate::picture::{PictureError, Style, render, save_png};
+use crate::picture::{Image, PictureError, Style, render, save_png};
 use crate::recipe::MesherEntry;
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
@@ -48,6 +51,14 @@ pub enum RunError {
         /// What to change.
         cure: String,
     },
+    /// An animation of too many frames.
+    #[error("{}: {frames} frames; an animation has at most {MOST_FRAMES}", file.display())]
+    Frames {
+        /// The animation.
+        file: PathBuf,
+        /// How many it would have.
+        frames: usize,
+    },
     /// An output that is there already.
     #[error("{}: exists already; overwrite it with --force", .0.display())]
     Exists(PathBuf),
@@ -72,10 +83,19 @@ pub struct Settings {
     pub force: bool,
     /// Whether to count self-intersections.
     pub verify: bool,
+    /// How animations are played.
+    pub playing: Playing,
     /// How pictures look; all at one scale, that of the shapes unless it has a frame.
     pub style: Style,
     /// SHA-256 of the recipe's text.
     pub recipe_hash: String,
+}
+
+impl Settings {
+    /// What stands in the head of a mesh file.
+    fn note(&self) -> String {
+        format!("recipe={}", self.recipe_hash.get(..16).unwrap_or_default())
+    }
 }
 
 /// Runs every frame of a scene and writes the report.
@@ -97,6 +117,7 @@ pub fn run(
     settings.style.frame = settings.style.frame.or(Some(shapes));
     let settings = &settings;
     for variant in &scene.variants {
+        let mut reel = Reel::new(&variant.name, settings);
         for &t in &variant.times {
             let work = Work {
                 variant: &variant.name,
@@ -106,19 +127,29 @@ pub fn run(
                 crumbs: variant.crumbs,
                 verify: settings.verify,
             };
-            let made = match variant.morph(t, job) {
-                Ok(morph) => make(&work, &|job| morph.at(t, job), job)?,
+            let start = Instant::now();
+            let made = variant.morph(t, job);
+            // a shape that moves is made anew
+            let fresh = start.elapsed().as_secs_f64();
+            let (made, notes) = match made {
+                Ok(morph) => (make(&work, &|job| morph.at(t, job), job)?, morph.notes()),
                 Err(MorphError::Cancelled(stop)) => return Err(stop.into()),
-                Err(e) => FrameResult::failed(&work, e.to_string()),
+                Err(e) => (FrameResult::failed(&work, e.to_string()), Vec::new()),
             };
             let mut frame = made.report;
+            frame.seconds.morph += fresh;
+            frame.notes = notes.into_iter().filter(|n| !report.notes.contains(n)).collect();
+            report.notes.extend(frame.notes.iter().cloned());
             frame.mean_volume(variant.mean_volume(t));
-            if let Some(mesh) = &made.mesh {
-                put(&mut frame, mesh, settings, job)?;
-            }
+            let image = match &made.mesh {
+                Some(mesh) => put(&mut frame, mesh, settings, job)?,
+                None => None,
+            };
+            reel.add(t, made.mesh.as_ref(), image, job)?;
             told(&frame);
             report.frames.push(frame);
         }
+        report.animations.extend(reel.finish(job)?);
     }
     report.seconds_total += start.elapsed().as_secs_f64();
     report.peak_memory_mb = peak_memory().map(|b| b as f64 / 1e6);
@@ -126,20 +157,19 @@ pub fn run(
     Ok(report)
 }
 
-/// Writes the mesh and the picture of a frame.
+/// Writes the mesh and the picture of a frame, and gives the picture.
 fn put(
     frame: &mut FrameReport,
     mesh: &mesh::TriMesh,
     settings: &Settings,
     job: &dyn Job,
-) -> Result<(), RunError> {
+) -> Result<Option<Image>, RunError> {
     crate::job::check(job)?;
     let path = settings.names.mesh(&frame.hybrid, frame.t);
     job.stage("write");
     let start = Instant::now();
     files::folder_of(&path)?;
-    let note = format!("recipe={}", settings.recipe_hash.get(..16).unwrap_or_default());
-    match mesh::write(&path, mesh, &note, settings.force) {
+    match mesh::write(&path, mesh, &settings.note(), settings.force) {
         Ok(bytes) => {
             frame.file = Some(path.display().to_string());
             frame.file_bytes = Some(bytes);
@@ -147,18 +177,27 @@ fn put(
         Err(e) => frame.error = Some(e.to_string()),
     }
     frame.seconds.write = start.elapsed().as_secs_f64();
-    if let Some(path) = settings.names.picture(&frame.hybrid, frame.t) {
-        job.stage("picture");
-        let start = Instant::now();
-        files::folder_of(&path)?;
-        let drawn = render(mesh, &settings.style);
-        match drawn.and_then(|image| save_png(&path, &image, settings.force)) {
-            Ok(()) => frame.picture = Some(path.display().to_string()),
-            Err(e) => frame.error = Some(e.to_string()),
+    let Some(path) = settings.names.picture(&frame.hybrid, frame.t) else {
+        return Ok(None);
+    };
+    job.stage("picture");
+    let start = Instant::now();
+    files::folder_of(&path)?;
+    let drawn = render(mesh, &settings.style).and_then(|image| {
+        save_png(&path, &image, settings.force)?;
+        Ok(image)
+    });
+    frame.seconds.picture = start.elapsed().as_secs_f64();
+    match drawn {
+        Ok(image) => {
+            frame.picture = Some(path.display().to_string());
+            Ok(Some(image))
         }
-        frame.seconds.picture = start.elapsed().as_secs_f64();
+        Err(e) => {
+            frame.error = Some(e.to_string());
+            Ok(None)
+        }
     }
-    Ok(())
 }
 
 /// The folder of a path, the current one for a bare name.

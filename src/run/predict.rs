@@ -71,7 +71,8 @@ pub fn predict(draft: &Draft) -> Prediction {
     let shapes = areas.iter().map(|&a| bricks(a) * LEAF_BYTES).sum::<f64>() + tables;
     let times = |v: &MorphEntry| v.t.as_ref().map_or(1, |t| t.0.len() as u64);
     let frames = draft.recipe().variants().iter().map(|(_, v)| times(v)).sum();
-    total(frames, &Lattice::covering(&draft.domain(), h), size, shapes)
+    let held = shapes + draft.method_bytes();
+    total(frames, &Lattice::covering(&draft.domain(), h), size, held)
 }
 
 /// From the area (mm²) of one shape that is sampled directly.

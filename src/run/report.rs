@@ -1,5 +1,6 @@
 //! `run.json`: what was made, from what, how long it took.
 
+use super::AnimationReport;
 use crate::check::{Crumbs, Health};
 use crate::scene::{Input, Search, LiveShape};
 use serde::Serialize;
@@ -61,6 +62,9 @@ pub struct FrameReport {
     pub volume_kept: Option<f64>,
     /// The state of the mesh.
     pub health: Option<Health>,
+    /// What the method found at this frame and had not said before; goes to the run's notes.
+    #[serde(skip)]
+    pub notes: Vec<String>,
 }
 
 impl FrameReport {
@@ -131,6 +135,8 @@ pub struct Report {
     pub searches: Vec<Search>,
     /// The frames.
     pub frames: Vec<FrameReport>,
+    /// The files that play them.
+    pub animations: Vec<AnimationReport>,
 }
 
 impl Report {
@@ -140,9 +146,10 @@ impl Report {
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
-    /// Whether every frame has its mesh.
+    /// Whether every frame has its mesh, and every animation was written.
     pub fn complete(&self) -> bool {
         self.frames.iter().all(|f| f.error.is_none())
+            && self.animations.iter().all(|a| a.error.is_none())
     }
 
     /// Whether every mesh there is can be printed.

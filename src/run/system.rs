@@ -1,6 +1,47 @@
 //! What the machine says about memory.
 
+use serde::Serialize;
 use std::fs;
+
+/// The machine a run was made on.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Machine {
+    /// Operating system and its kernel's version, as far as it tells.
+    pub os: String,
+    /// Kind of processor.
+    pub arch: String,
+    /// Its name, as far as the system tells.
+    pub processor: Option<String>,
+    /// Cores that the program may use.
+    pub cores: usize,
+    /// Threads used.
+    pub threads: usize,
+}
+
+impl Machine {
+    /// This machine.
+    pub fn here() -> Self {
+        let told = |file: &str| fs::read_to_string(file).ok();
+        let kernel = told("/proc/sys/kernel/osrelease").unwrap_or_default();
+        let processor = told("/proc/cpuinfo").and_then(|text| {
+            let line = text.lines().find(|l| l.starts_with("model name"))?;
+            Some(line.split_once(':')?.1.trim().to_owned())
+        });
+        Self {
+            os: format!("{} {}", std::env::consts::OS, kernel.trim()).trim_end().to_owned(),
+            arch: std::env::consts::ARCH.to_owned(),
+            processor,
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            threads: rayon::current_num_threads(),
+        }
+    }
+}
+
+/// Makes [`peak_memory`] count from now on; false where the system cannot.
+pub fn reset_peak() -> bool {
+    // "5" resets the peak resident set (proc_pid_clear_refs(5))
+    fs::write("/proc/self/clear_refs", "5").is_ok()
+}
 
 /// Largest resident set of this process so far, bytes; `None` where the system does not tell.
 pub fn peak_memory() -> Option<u64> {

@@ -1,13 +1,11 @@
 //! `auto`: features suggested where a recipe has none, and what they do chosen by a search.
 
-use super::single::Single;
 use super::{SceneError, plan, suggest};
 use crate::job::Job;
 use crate::morph::{self, Choice, Course, Inner, Outlook, Plan, Style, Tuning};
 use crate::parts::{self, Guess};
 use crate::recipe::{
-    FeatureMorph, InnerEntry, MethodEntry, MorphEntry, Place, PlainOr, Recipe, ShapeEntry, Source,
-    StyleEntry, TimeFn, Weights,
+    FeatureMorph, InnerEntry, MethodEntry, MorphEntry, Recipe, Source, StyleEntry, TimeFn, Weights,
 };
 use crate::weight::Ease;
 use serde::Serialize;
@@ -72,32 +70,16 @@ pub(super) fn with_features(
         whole(&mut recipe);
         return Ok((recipe, vec![why.to_owned()]));
     }
-    let mut singles = Vec::with_capacity(wanted.len());
-    for name in &wanted {
-        let entry = ShapeEntry {
-            place: PlainOr::Plain(Place::Keep),
-            turn_deg: 0.0,
-            shift: [0.0; 3],
-            ..recipe.shapes[name].clone()
-        };
-        let single = Single::open(name, entry, &recipe.grid, beside).map_err(|e| relocate(e, source))?;
-        let bounds = single.bounds();
-        singles.push((name, bounds, single.field(job).map_err(|e| relocate(e, source))?.0));
-    }
-    job.stage("parts");
-    let fields: Vec<_> = singles.iter().map(|(n, _, f)| (n.as_str(), &**f)).collect();
-    let suggestion = parts::suggest(&fields, job)?;
+    let entries = wanted.iter().map(|n| (n.clone(), recipe.shapes[n].clone())).collect();
+    let looked = suggest::look(entries, beside, job).map_err(|e| relocate(e, source))?;
+    let suggestion = looked.suggestion;
     let mut found: Vec<String> = suggestion.shapes.iter().map(words).collect();
     if suggestion.shapes.iter().any(|g| g.chair.is_none()) {
         found.push("auto: no parts of a chair to pair; space-time instead".to_owned());
         whole(&mut recipe);
         return Ok((recipe, found));
     }
-    for ((name, bounds, _), guess) in singles.iter().zip(&suggestion.shapes) {
-        if let Some(entry) = recipe.shapes.get_mut(*name) {
-            suggest::place(entry, &guess.pose, bounds);
-        }
-    }
+    recipe.shapes.extend(looked.shapes);
     recipe.features = suggest::features(&suggestion);
     Ok((recipe, found))
 }

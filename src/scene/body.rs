@@ -91,6 +91,11 @@ impl Body {
         }
     }
 
+    /// Whether it is a surface that is another at each t, even if it is held at one.
+    pub fn follows(&self) -> bool {
+        matches!(self, Self::Surface(skinned) if skinned.object().moves())
+    }
+
     /// The box at the given times, mm.
     pub fn bounds_at(&self, times: &[f64]) -> Aabb {
         match self {

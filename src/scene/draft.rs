@@ -4,13 +4,15 @@ use super::live::{self, Placed, Stop, Want};
 use super::variant::{Parts, Variant, asked};
 use super::auto::{self, Search};
 use super::live::LiveShape;
-use super::{Scene, SceneError, mesh_element, plan};
+use super::{Scene, SceneError, mesh_element, plan, scheme};
 use crate::element::Element;
-use crate::morph::MorphError;
 use crate::grid::Lattice;
 use crate::job::{self, Job};
+use crate::morph::MorphError;
 use crate::num::Aabb;
-use crate::recipe::{GridEntry, MethodEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join};
+use crate::recipe::{
+    GridEntry, MethodEntry, MorphEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join,
+};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -100,6 +102,19 @@ impl Draft {
         &self.recipe
     }
 
+    /// Memory (bytes) that the methods need beside the shapes and the frames, all held at once.
+    pub fn method_bytes(&self) -> f64 {
+        let domain = hull(&self.placed);
+        let bytes = |(at, entry): &(String, MorphEntry)| -> Option<f64> {
+            let names = plan::shape_names(entry, &self.recipe, at).ok()?;
+            let method = plan::method(entry, &names, &self.recipe, at).ok()?;
+            let of: Vec<&str> = names.iter().map(String::as_str).collect();
+            let scheme = scheme::scheme(entry, method, &of, self.step, &self.recipe).ok()?;
+            Some(scheme.bytes(&domain, of.len()))
+        };
+        self.recipe.variants().iter().filter_map(bytes).sum()
+    }
+
     fn padding(&self) -> f64 {
         self.longest() * self.recipe.grid.padding.unwrap_or(GridEntry::PADDING)
     }
@@ -109,6 +124,19 @@ impl Draft {
     /// # Errors
     /// What is wrong in the recipe or a file, by its key; cancelled.
     pub fn build(self, job: &dyn Job) -> Result<Scene, SceneError> {
+        let (scene, refused) = self.build_each(job)?;
+        refused.into_iter().next().map_or(Ok(scene), |(_, why)| Err(why))
+    }
+
+    /// [`Draft::build`], but a hybrid that cannot be planned does not stop the others: its name and
+    /// what is wrong come back beside the scene.
+    ///
+    /// # Errors
+    /// What is wrong with the shapes or the grid, by its key; cancelled.
+    pub fn build_each(
+        self,
+        job: &dyn Job,
+    ) -> Result<(Scene, Vec<(String, SceneError)>), SceneError> {
         let (padding, step) = (self.padding(), self.step);
         let Self { mut recipe, source, beside, placed, uses, found, .. } = self;
         let locate = |p: Problem| SceneError::Bad(source.locate(p));
@@ -133,19 +161,23 @@ impl Draft {
             Stop::Problem(p) => locate(p),
             Stop::Cancelled(c) => c.into(),
         })?;
-        let parts = Parts { recipe: &recipe, beside: &beside, shapes: &shapes, meshes: &meshes, step };
-        let variants = recipe
-            .variants()
-            .iter()
-            .map(|(at, entry)| Variant::new(entry, at, &parts))
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(locate)?;
+        let parts =
+            Parts { recipe: &recipe, beside: &beside, shapes: &shapes, meshes: &meshes, step };
+        let (mut variants, mut refused) = (Vec::new(), Vec::new());
+        for (at, entry) in recipe.variants() {
+            match Variant::new(&entry, &at, &parts) {
+                Ok(variant) => variants.push(variant),
+                Err(p) => refused.push((entry.name, locate(p))),
+            }
+        }
         notes.extend(variants.iter().flat_map(|v| v.notes.clone()));
-        let domain = variants.iter().fold(Aabb::EMPTY, |b, v| b.hull(v.domain()));
+        // where no hybrid can be planned, the shapes themselves
+        let domain = variants.iter().map(Variant::domain).reduce(Aabb::hull).unwrap_or(box_);
         let lattice = Lattice::covering(&domain.grow(padding), step);
         fits(&lattice).map_err(locate)?;
         let name = recipe.name.clone();
-        Ok(Scene { name, shapes, variants, lattice, notes, inputs, searches, recipe })
+        let scene = Scene { name, shapes, variants, lattice, notes, inputs, searches, recipe };
+        Ok((scene, refused))
     }
 }
 
@@ -158,7 +190,7 @@ fn searches(
 ) -> Result<Vec<Search>, Stop> {
     let mut all = Vec::new();
     for (n, (at, entry)) in recipe.variants().into_iter().enumerate() {
-        let names = plan::shape_names(&entry, recipe, &at)?;
+        let Ok(names) = plan::shape_names(&entry, recipe, &at) else { continue };
         let live: Vec<&LiveShape> =
             names.iter().filter_map(|n| shapes.iter().find(|s| s.name == *n)).collect();
         let auto = entry.method.unwrap_or_default() == MethodEntry::Auto;
@@ -166,8 +198,10 @@ fn searches(
         if !auto || recipe.features.is_empty() || live.len() < 2 || live.iter().any(|s| s.moves()) {
             continue;
         }
-        let method = plan::method(&entry, &names, recipe, &at)?;
-        let plan = plan::plan(&entry, method, &live, meshes, recipe, &at)?;
+        // what is wrong with an entry is told when its variant is made
+        let planned = plan::method(&entry, &names, recipe, &at)
+            .and_then(|method| plan::plan(&entry, method, &live, meshes, recipe, &at));
+        let Ok(plan) = planned else { continue };
         let volumes: Vec<f64> = live.iter().map(|s| s.volume).collect();
         let found = auto::searched(&entry, &plan, &volumes, job).map_err(|e| match e {
             MorphError::Cancelled(c) => Stop::Cancelled(c),
@@ -232,7 +266,8 @@ fn longest(placed: &[Placed]) -> f64 {
     hull(placed).size().max_element()
 }
 
-fn step(grid: &GridEntry, longest: f64) -> f64 {
+/// Side of a cell, mm, where the longest side of all is known.
+pub(super) fn step(grid: &GridEntry, longest: f64) -> f64 {
     let cells = grid.resolution.unwrap_or(GridEntry::RESOLUTION);
     grid.voxel.unwrap_or(longest / f64::from(cells))
 }

@@ -158,12 +158,7 @@ fn solid_file(path: &Path, at: &str) -> Result<Read, Problem> {
     Ok(Read { inputs: vec![input], ..Read::new(body, story) })
 }
 
-fn surface_file(
-    entry: &ShapeEntry,
-    path: &Path,
-    solid: bool,
-    at: &str,
-) -> Result<Read, Problem> {
+fn surface_file(entry: &ShapeEntry, path: &Path, solid: bool, at: &str) -> Result<Read, Problem> {
     let key = format!("{at}.surface");
     let fail = |why: String| Problem::new(&key, why);
     let file = surface::open(path).map_err(|e| fail(e.to_string()))?;

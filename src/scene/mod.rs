@@ -15,6 +15,7 @@ mod pair;
 mod place;
 mod plan;
 mod rows;
+mod scheme;
 mod single;
 mod skinned;
 pub mod suggest;
@@ -32,7 +33,7 @@ pub use variant::Variant;
 
 use crate::grid::Lattice;
 use crate::job::Cancelled;
-use crate::recipe::{Recipe, RecipeError};
+use crate::recipe::{MorphEntry, Problem, Recipe, RecipeError};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -78,6 +79,17 @@ pub struct Scene {
     pub searches: Vec<Search>,
     /// The recipe with `auto` carried out: features suggested, parameters chosen.
     pub recipe: Recipe,
+}
+
+/// Names of the shapes that an entry morphs, in order, when its method can be had of this recipe;
+/// `at` is the entry's key.
+///
+/// # Errors
+/// Too few shapes, or a method that needs what the recipe lacks.
+pub fn applies(entry: &MorphEntry, recipe: &Recipe, at: &str) -> Result<Vec<String>, Problem> {
+    let names = plan::shape_names(entry, recipe, at)?;
+    plan::method(entry, &names, recipe, at)?;
+    Ok(names)
 }
 
 /// SHA-256 of bytes, hexadecimal.

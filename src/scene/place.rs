@@ -58,7 +58,9 @@ pub(super) fn place(
         None => 1.0,
         Some(h) => body.scale_to(h).ok_or_else(|| {
             let tall = body.bounds().size().z;
-            let why = format!("the shape is {tall} mm high, thickness included; it cannot be scaled to {h}");
+            let why = format!(
+                "the shape is {tall} mm high, thickness included; it cannot be scaled to {h}"
+            );
             Problem::new(format!("{at}.height"), why)
         })?,
     };

@@ -3,11 +3,14 @@
 use super::elements;
 use super::live::LiveShape;
 use super::rows::{Rows, mean_rows};
+use super::{draft, scheme};
 use crate::element::{Element, align};
 use crate::morph::{Blend, Form, Frames, Inner, Part, Plan, SpaceTime};
+use crate::num::Aabb;
 use crate::recipe::{
     BlendEntry, ElementShape, FeatureEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry,
-    OneOrMany, PlainOr, Problem, Recipe, SpaceTimeEntry, SurfaceMethod, WeightingEntry, WeightingKind,
+    OneOrMany, PlainOr, Problem, Recipe, SpaceTimeEntry, SurfaceMethod, WeightingEntry,
+    WeightingKind,
 };
 use crate::warp::Deform;
 use crate::weight::Weighting;
@@ -31,7 +34,10 @@ pub(super) fn shape_names(
     let key = if entry.between.is_some() { "between" } else { "among" };
     let at = format!("{at}.{key}");
     if names.is_empty() {
-        return Err(Problem::new(at, "no shape; give one to have it alone, or two or more to morph"));
+        return Err(Problem::new(
+            at,
+            "no shape; give one to have it alone, or two or more to morph",
+        ));
     }
     for (i, name) in names.iter().enumerate() {
         if names[..i].contains(name) {
@@ -54,6 +60,10 @@ pub(super) fn method(
     let needs =
         matches!(asked, MethodEntry::Graft | MethodEntry::Group | MethodEntry::FeatureVolume);
     let at = format!("{at}.method");
+    if asked == MethodEntry::Warp && !featured && recipe.anchors.is_empty() {
+        let why = "this method needs points that correspond; add [[features]] or [[anchors]]";
+        return Err(Problem::new(at, why));
+    }
     if shapes == 1 && asked != MethodEntry::Auto {
         let why = "this morph is of one shape, which is made as it is; remove the method";
         return Err(Problem::new(at, why));
@@ -69,6 +79,10 @@ pub(super) fn method(
         MethodEntry::Auto if shapes == 1 => Ok(MethodEntry::Auto),
         MethodEntry::Graft if shapes != 2 => {
             let why = format!("a graft has two shapes, here are {shapes}; use \"group\"");
+            Err(Problem::new(at, why))
+        }
+        MethodEntry::LevelSet if shapes != 2 => {
+            let why = format!("a level set has two shapes, here are {shapes}; use \"transport\"");
             Err(Problem::new(at, why))
         }
         MethodEntry::Auto if !featured => Ok(MethodEntry::SpaceTime),
@@ -106,8 +120,7 @@ pub(super) fn plan(
     at: &str,
 ) -> Result<Plan, Problem> {
     let names: Vec<&str> = shapes.iter().map(|s| s.name.as_str()).collect();
-    let plain = matches!(method, MethodEntry::Linear | MethodEntry::SpaceTime);
-    let used: &[FeatureEntry] = if plain { &[] } else { &recipe.features };
+    let used: &[FeatureEntry] = if scheme::whole(method) { &[] } else { &recipe.features };
     let rows = Rows { entry, names: &names };
     let mut features = Vec::with_capacity(used.len());
     for (i, f) in used.iter().enumerate() {
@@ -124,7 +137,10 @@ pub(super) fn plan(
         _ => Blend::Maps,
     };
     let tall = shapes.iter().map(|s| s.bounds.size().z).sum::<f64>() / shapes.len().max(1) as f64;
+    let all = shapes.iter().fold(Aabb::EMPTY, |b, s| b.hull(s.bounds));
+    let step = draft::step(&recipe.grid, all.size().max_element());
     Ok(Plan {
+        scheme: scheme::scheme(entry, method, &names, step, recipe)?,
         shapes: shapes
             .iter()
             .map(|s| Part { name: s.name.clone(), field: s.field.clone() })

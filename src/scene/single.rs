@@ -17,8 +17,8 @@ use std::path::Path;
 pub struct Single {
     placed: live::Placed,
     entry: ShapeEntry,
-    /// The time of what moves.
-    t: f64,
+    /// The time at which it is taken: of what moves that of its entry, else 0.5; of the rest 0.
+    pub t: f64,
     /// Where to sample it.
     pub lattice: Lattice,
 }
@@ -72,6 +72,7 @@ impl Single {
         let t = entry.at.unwrap_or(0.5);
         let want = Want { like: None, times: &[t], solid };
         let placed = live::load(name, &entry, beside, &want, &at).map_err(locate)?;
+        let t = if placed.body.follows() { t } else { 0.0 };
         let lattice = cells(grid, placed.bounds, thickness(&entry)).map_err(locate)?;
         Ok(Self { placed, entry, t, lattice })
     }

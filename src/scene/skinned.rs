@@ -173,6 +173,11 @@ impl Skinned {
         }
     }
 
+    /// What it is.
+    pub fn object(&self) -> &Parametric {
+        &self.object
+    }
+
     /// Where it stands: the similarity from the file's space to ours.
     pub fn stands(&self) -> Similarity {
         self.by[0]
@@ -276,12 +281,7 @@ impl Skinned {
     }
 
     /// The solid at `t` for cells of `step` mm, and what the surface is.
-    pub fn field(
-        &self,
-        t: f64,
-        step: f64,
-        job: &dyn Job,
-    ) -> Result<(Shared, Sides), SkinnedError> {
+    pub fn field(&self, t: f64, step: f64, job: &dyn Job) -> Result<(Shared, Sides), SkinnedError> {
         let mesh = self.mesh(t, self.how.tolerance(step))?;
         crate::job::check(job)?;
         let curve = matches!(self.object, Parametric::Curve(_) | Parametric::CurveMotion(_));
@@ -363,8 +363,7 @@ fn long(curve: &dyn Curve) -> Result<f64, SurfaceError> {
     let pieces = curve.breaks().windows(2).enumerate();
     let looks = pieces.flat_map(|(piece, ends)| {
         let (a, b) = (ends[0], ends[1]);
-        (0..=LOOKS)
-            .map(move |i| curve.jet(piece, a + (b - a) * f64::from(i) / f64::from(LOOKS)).c)
+        (0..=LOOKS).map(move |i| curve.jet(piece, a + (b - a) * f64::from(i) / f64::from(LOOKS)).c)
     });
     diagonal(&Aabb::of(looks))
 }

@@ -1,18 +1,73 @@
-//! Suggested parts as entries of a recipe.
+//! Shapes looked at before a recipe is written, and what was found as its entries.
 
+use super::{SceneError, Single};
 use crate::element::{Element, Shape};
+use crate::field::Shared;
+use crate::job::{Job, check};
+use crate::mesh::TriMesh;
 use crate::num::Aabb;
-use crate::parts::{Pose, Suggestion};
+use crate::parts::{self, Paired, Pose, Suggestion};
 use crate::recipe::{
-    BoxShape, CylinderShape, ElementEntry, FeatureEntry, Place, PlainOr, ShapeEntry,
+    BoxShape, CylinderShape, ElementEntry, FeatureEntry, GridEntry, Place, PlainOr, ShapeEntry,
 };
 use glam::{DVec3, EulerRot};
 use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Shapes looked at.
+pub struct Looked {
+    /// Names and entries; each entry now stands its shape in its pose.
+    pub shapes: Vec<(String, ShapeEntry)>,
+    /// What was found, in the order of the shapes.
+    pub suggestion: Suggestion,
+    /// The fields, where the files have them: not in their poses.
+    pub fields: Vec<Shared>,
+    /// The triangles, likewise.
+    pub shells: Vec<TriMesh>,
+    /// What was assumed and found on reading.
+    pub notes: Vec<String>,
+}
+
+/// Reads shapes, finds their parts and stands each in its pose; `beside` is the folder paths are
+/// relative to. The entries' own `turn_deg`, `move` and `place` are replaced.
+///
+/// # Errors
+/// What is wrong with an entry or a file; cancelled.
+pub fn look(
+    shapes: Vec<(String, ShapeEntry)>,
+    beside: &Path,
+    job: &dyn Job,
+) -> Result<Looked, SceneError> {
+    let (mut fields, mut shells, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut stood, mut notes) = (Vec::new(), Vec::new());
+    for (name, entry) in shapes {
+        check(job)?;
+        job.stage(&format!("read {name}"));
+        let kept = PlainOr::Plain(Place::Keep);
+        let entry = ShapeEntry { turn_deg: 0.0, shift: [0.0; 3], place: kept, ..entry };
+        let single = Single::open(&name, entry.clone(), &GridEntry::default(), beside)?;
+        notes.extend(single.notes().iter().cloned());
+        boxes.push(single.bounds());
+        shells.push(single.shells()?);
+        let (field, found) = single.field(job)?;
+        notes.extend(found);
+        fields.push(field);
+        stood.push((name, entry));
+    }
+    job.stage("parts");
+    let named: Vec<_> =
+        stood.iter().zip(&fields).map(|((name, _), f)| (name.as_str(), &**f)).collect();
+    let suggestion = parts::suggest(&named, job)?;
+    for (((_, entry), guess), bounds) in stood.iter_mut().zip(&suggestion.shapes).zip(&boxes) {
+        place(entry, &guess.pose, bounds);
+    }
+    Ok(Looked { shapes: stood, suggestion, fields, shells, notes })
+}
 
 /// The suggested features as entries; lengths to a tenth of a millimetre.
 pub fn features(suggestion: &Suggestion) -> Vec<FeatureEntry> {
     let names = || suggestion.shapes.iter().map(|s| s.name.clone());
-    let entry = |f: &crate::parts::Paired| {
+    let entry = |f: &Paired| {
         let on: Option<BTreeMap<_, _>> =
             names().zip(&f.elements).map(|(name, e)| Some((name, element(e)?))).collect();
         Some(FeatureEntry { name: f.name.clone(), on: on?, ..FeatureEntry::default() })

@@ -53,7 +53,8 @@ struct Member {
 /// How the field of a time is made.
 enum Way {
     /// By the methods of `morph`; `dominant` when the frames are those of the shape that weighs most.
-    Plan { plan: Box<Plan>, dominant: bool },
+    /// `made` of it once: methods keep what they work out for one time for the next.
+    Plan { plan: Box<Plan>, dominant: bool, made: Arc<dyn Morph> },
     /// One shape that keeps still.
     Still(Shared),
     /// One shape that moves.
@@ -79,9 +80,9 @@ impl Variant {
             }
             _ => {
                 let plan = plan::plan(entry, method, &live, parts.meshes, recipe, at)?;
-                build(plan.clone()).map_err(|e| Problem::new(at, e.to_string()))?;
+                let made = build(plan.clone()).map_err(|e| Problem::new(at, e.to_string()))?;
                 let dominant = entry.frames.as_deref() == Some("dominant");
-                Way::Plan { plan: Box::new(plan), dominant }
+                Way::Plan { plan: Box::new(plan), dominant, made: made.into() }
             }
         };
         let loose = matches!(method, MethodEntry::Graft | MethodEntry::Group);
@@ -106,11 +107,16 @@ impl Variant {
     /// A shape that has no field at this time; cancelled. A plan that cannot be carried out was found
     /// out before.
     pub fn morph(&self, t: f64, job: &dyn Job) -> Result<Box<dyn Morph>, MorphError> {
-        let (plan, dominant) = match &self.way {
+        let (plan, dominant, made) = match &self.way {
             Way::Still(field) => return Ok(Box::new(Moment(field.clone()))),
-            Way::Moving(shape) | Way::Pair(shape) => return Ok(Box::new(Moment(shape.at(t, job)?.exact.clone()))),
-            Way::Plan { plan, dominant } => (plan, *dominant),
+            Way::Moving(shape) | Way::Pair(shape) => {
+                return Ok(Box::new(Moment(shape.at(t, job)?.exact.clone())));
+            }
+            Way::Plan { plan, dominant, made } => (plan, *dominant, made),
         };
+        if !dominant && self.shapes.iter().all(|s| s.moving.is_none()) {
+            return Ok(Box::new(made.clone()));
+        }
         let mut plan = Plan::clone(plan);
         for (part, shape) in plan.shapes.iter_mut().zip(&self.shapes) {
             if let Some(moving) = &shape.moving {
@@ -210,7 +216,8 @@ fn heaviest(plan: &Plan, t: f64) -> usize {
 fn times(entry: &MorphEntry, moves: bool, at: &str) -> Result<Vec<f64>, Problem> {
     match &entry.t {
         Some(t) if !moves && t.0.len() > 1 => {
-            let why = "nothing depends on t: no shape moves and the weights are fixed; give one time";
+            let why =
+                "nothing depends on t: no shape moves and the weights are fixed; give one time";
             Err(Problem::new(format!("{at}.t"), why))
         }
         _ => Ok(asked(entry)),

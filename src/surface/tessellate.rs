@@ -54,6 +54,28 @@ pub fn tessellate(surface: &dyn Surface, tolerance: f64) -> Result<Tessellation,
 /// # Errors
 /// Fewer than two points a side; points that are not finite; more than [`MOST_POINTS`] points.
 pub fn net(surface: &dyn Surface, size: [usize; 2]) -> Result<Tessellation, SurfaceError> {
+    let grids = grids(surface, size)?;
+    Ok(orient::finish(join(&grids, SNAP * counts::size(surface)?)))
+}
+
+/// The net of [`net`] with every point of every patch its own: as many at every time of a motion,
+/// whatever comes together or parts. Faces face as su x sv does.
+///
+/// # Errors
+/// As for [`net`].
+pub fn loose_net(surface: &dyn Surface, size: [usize; 2]) -> Result<TriMesh, SurfaceError> {
+    let mut mesh = TriMesh::default();
+    for grid in grids(surface, size)? {
+        let start = mesh.points.len() as u32;
+        let ids: Vec<u32> = (start..start + grid.points.len() as u32).collect();
+        mesh.faces.extend(grid.faces(&ids));
+        mesh.points.extend(grid.points);
+    }
+    Ok(mesh)
+}
+
+/// A grid a patch, of that many points over u and v.
+fn grids(surface: &dyn Surface, size: [usize; 2]) -> Result<Vec<Grid>, SurfaceError> {
     let [nu, nv] = size;
     if nu.min(nv) < 2 {
         return Err(SurfaceError::new("samples", format!("{nu} x {nv}; at least 2 each way")));
@@ -63,10 +85,8 @@ pub fn net(surface: &dyn Surface, size: [usize; 2]) -> Result<Tessellation, Surf
         let why = format!("{points} points; at most {MOST_POINTS}");
         return Err(SurfaceError::new("samples", why));
     }
-    let near = SNAP * counts::size(surface)?;
     let grid = |p| Grid::sample(surface, p, [nu - 1, nv - 1]);
-    let grids: Vec<Grid> = (0..surface.patches()).map(grid).collect::<Result<_, _>>()?;
-    Ok(orient::finish(join(&grids, near)))
+    (0..surface.patches()).map(grid).collect()
 }
 
 /// Grids with steps small enough.

@@ -41,6 +41,9 @@ fn json_has_an_object_a_file_with_known_numbers() {
     assert_eq!(a["volume_mm3"], 6000.0);
     assert_eq!(a["area_mm2"], 2200.0);
     assert_eq!(a["bbox_mm"], serde_json::json!([[-5.0, -10.0, -15.0], [5.0, 10.0, 15.0]]));
+    // the thinner of its sides, and it stands on one of them
+    assert!((a["min_wall_mm"].as_f64().unwrap() - 10.0).abs() < 1e-9, "{a}");
+    assert_eq!((&a["balanced"], &open["min_wall_mm"]), (&Value::Bool(true), &Value::Null));
     assert_eq!(open["closed"], false);
     assert_eq!(open["volume_mm3"], Value::Null);
     assert_eq!(open["printable"], false);
@@ -66,4 +69,14 @@ fn height_and_unit_scale() {
     let ran = folder.run(&["check", "a.obj", "--up", "z", "--print-height", "100"]).ends(0);
     assert!(ran.stderr().contains("50.0 x 50.0 x 100.0 mm"), "{ran}");
     folder.run(&["check", "a.obj", "--print-height", "0"]).fails(2, &["--print-height"]);
+}
+
+#[test]
+fn walls_are_judged_by_the_nozzle() {
+    let folder = Folder::new();
+    folder.put("plate.obj", &block([0.0; 3], [20.0, 20.0, 0.15]));
+    let args = ["check", "plate.obj", "--up", "z", "--strict", "--nozzle"];
+    folder.run(&[&args[..], &["0.2"]].concat()).ends(0);
+    let ran = folder.run(&[&args[..], &["0.4"]].concat()).fails(4, &["not printable"]);
+    assert!(ran.stdout().contains("thinnest wall has 0.30 mm"), "{ran}");
 }

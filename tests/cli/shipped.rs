@@ -5,7 +5,7 @@ use fieldgraft::recipe::{Recipe, ShapeEntry, parse_solid};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-fn texts(folder: &str) -> Vec<(PathBuf, String)> {
+pub fn texts(folder: &str) -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(folder);
     let Ok(entries) = fs::read_dir(&root) else {
         return Vec::new();
@@ -53,7 +53,7 @@ fn recipes_hold_no_key_that_the_schema_lacks() {
 }
 
 /// Collects the keys of `value` that `schema` does not allow.
-fn walk(
+pub fn walk(
     value: &serde_json::Value,
     schema: &serde_json::Value,
     root: &serde_json::Value,

@@ -1,12 +1,13 @@
 //! A sheet of meshes with their elements laid over them.
 
 use super::super::failure::Failure;
-use super::Input;
 use fieldgraft::element::tessellate;
 use fieldgraft::mesh::TriMesh;
 use fieldgraft::num::Aabb;
 use fieldgraft::parts::{Guess, Suggestion};
-use fieldgraft::picture::{Cell, Image, Layout, PictureError, Style, View, render, save_png, sheet};
+use fieldgraft::picture::{
+    Cell, Image, Layout, PictureError, Style, View, render, save_png, sheet,
+};
 use glam::{DAffine3, DQuat, DVec3};
 use std::path::Path;
 
@@ -15,11 +16,12 @@ const SIDE: u32 = 420;
 /// Share of the elements' colour in a pixel.
 const VEIL: f32 = 0.45;
 /// Colours of kinds of features, by the word their names begin with.
-const COLORS: [(&str, [u8; 3]); 6] = [
+const COLORS: [(&str, [u8; 3]); 7] = [
     ("seat", [220, 60, 50]),
     ("back", [40, 150, 60]),
     ("arm", [235, 140, 20]),
     ("leg", [40, 90, 220]),
+    ("column", [40, 90, 220]),
     ("foot", [150, 60, 200]),
     ("", [20, 160, 170]),
 ];
@@ -27,28 +29,28 @@ const COLORS: [(&str, [u8; 3]); 6] = [
 /// Draws and saves the sheet: a row a shape, seen at an angle, from the front and from the side.
 pub(super) fn save(
     path: &Path,
-    inputs: &[Input],
+    shells: &[TriMesh],
     suggestion: &Suggestion,
     force: bool,
 ) -> Result<(), Failure> {
     let mut all = Vec::new();
-    cells(inputs, suggestion, &mut all)?;
-    let columns = if inputs.len() > 3 { 6 } else { 3 };
+    cells(shells, suggestion, &mut all)?;
+    let columns = if shells.len() > 3 { 6 } else { 3 };
     let image = sheet(&all, &Layout { columns, ..Layout::default() })?;
     Ok(save_png(path, &image, force)?)
 }
 
 /// Three views of each shape.
 fn cells(
-    inputs: &[Input],
+    shells: &[TriMesh],
     suggestion: &Suggestion,
     cells: &mut Vec<Cell>,
 ) -> Result<(), PictureError> {
-    for (i, (input, guess)) in inputs.iter().zip(&suggestion.shapes).enumerate() {
+    for (i, (mesh, guess)) in shells.iter().zip(&suggestion.shapes).enumerate() {
         for view in [View::Iso, View::Front, View::Side] {
-            let image = draw(input, guess, i, suggestion, view)?;
+            let image = draw(mesh, guess, i, suggestion, view)?;
             let caption = if view == View::Iso {
-                format!("{}\nconfidence {:.2}", input.name, guess.confidence)
+                format!("{}\nconfidence {:.2}", guess.name, guess.confidence)
             } else {
                 String::new()
             };
@@ -59,13 +61,13 @@ fn cells(
 }
 
 fn draw(
-    input: &Input,
+    mesh: &TriMesh,
     guess: &Guess,
     shape: usize,
     suggestion: &Suggestion,
     view: View,
 ) -> Result<Image, PictureError> {
-    let mut mesh = input.shells.clone();
+    let mut mesh = mesh.clone();
     let pose = &guess.pose;
     mesh.transform(&DAffine3::from_scale_rotation_translation(
         DVec3::splat(pose.scale),

@@ -1,7 +1,6 @@
 //! The suggested recipe as a text for people.
 
 use super::super::failure::Failure;
-use super::Input;
 use fieldgraft::parts::{Note, Suggestion};
 use fieldgraft::recipe::{FeatureEntry, PlainOr, Recipe, ShapeEntry};
 use fieldgraft::scene::suggest;
@@ -11,21 +10,22 @@ use std::path::{Component, Path, PathBuf};
 /// A complete recipe; `path` is where it will stand.
 pub(super) fn recipe(
     path: &Path,
-    inputs: &[Input],
+    shapes: &[(String, ShapeEntry)],
     suggestion: &Suggestion,
 ) -> Result<String, Failure> {
     let mut out = String::new();
-    let names: Vec<&str> = inputs.iter().map(|i| i.name.as_str()).collect();
+    let names: Vec<&str> = shapes.iter().map(|(name, _)| name.as_str()).collect();
     // writing to a string cannot fail
     let _ = writeln!(
         out,
         "# Suggested by `fieldgraft features suggest`: look at the elements, then edit what is wrong.\n\
-         # Millimetres, z up; fronts look to -y, left is -x, floors are at z = 0.\n\
+         # Millimetres, z up; fronts look to -y, left is -x, floors are at z = 0. The elements fit the\n\
+         # shapes as they stand here: for other sizes suggest again, with --height.\n\
          version = 1\nname = {}\n\n[grid]\nresolution = 128",
         quoted(&names.join(" x "))
     );
-    for (input, guess) in inputs.iter().zip(&suggestion.shapes) {
-        let mut entry = input.entry.clone();
+    for ((name, entry), guess) in shapes.iter().zip(&suggestion.shapes) {
+        let mut entry = entry.clone();
         for file in [&mut entry.mesh].into_iter().flatten() {
             *file = beside(path, file);
         }
@@ -36,7 +36,7 @@ pub(super) fn recipe(
         for w in &guess.warnings {
             let _ = writeln!(out, "# look here: {w}");
         }
-        let _ = writeln!(out, "[shapes.{}]\n{}", key(&input.name), shape(&entry)?);
+        let _ = writeln!(out, "[shapes.{}]\n{}", key(name), shape(&entry)?);
     }
     let notes = suggestion.features.iter().map(|f| (&f.note, f.confidence));
     for (feature, (note, sure)) in suggest::features(suggestion).iter().zip(notes) {
@@ -72,8 +72,8 @@ fn quoted(text: &str) -> String {
 
 /// A name as a key.
 fn key(name: &str) -> String {
-    let bare = !name.is_empty()
-        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
+    let bare =
+        !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
     if bare { name.to_owned() } else { quoted(name) }
 }
 
@@ -107,9 +107,11 @@ fn entry(feature: &FeatureEntry, names: &[&str]) -> Result<String, Failure> {
     let mut out = format!("[[features]]\nname = {}\n", quoted(&feature.name));
     for name in names {
         let Some(element) = feature.on.get(*name) else { continue };
-        let value = toml::Value::try_from(element)
+        let table = toml::Table::try_from(element)
             .map_err(|e| Failure::new(Failure::FAILED, format!("recipe: {e}")))?;
-        let _ = writeln!(out, "on.{} = {}", key(name), value);
+        for (what, value) in table {
+            let _ = writeln!(out, "on.{}.{what} = {value}", key(name));
+        }
     }
     Ok(out)
 }

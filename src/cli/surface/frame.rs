@@ -5,7 +5,7 @@ use super::rows;
 use crate::cli::failure::Failure;
 use crate::cli::watch::Watch;
 use fieldgraft::job::Job;
-use fieldgraft::mesh::write;
+use fieldgraft::mesh::{snap, weld, write};
 use fieldgraft::num::Aabb;
 use fieldgraft::scene::surface::{Still, SurfaceFile};
 use fieldgraft::surface::nurbs::polyline;
@@ -184,11 +184,15 @@ fn mesh(
             tessellate(surface, tolerance).map_err(wrong)?
         }
     };
-    write(path, &made.mesh, "", wanted.force)?;
+    // a patch that has shrunk to a point has nothing left once its numbers are those of a file
+    let mut mesh = made.mesh;
+    snap(&mut mesh);
+    let mesh = weld(&mesh);
+    write(path, &mesh, "", wanted.force)?;
     frame.samples = wanted.samples;
-    frame.triangles = Some(made.mesh.faces.len());
+    frame.triangles = Some(mesh.faces.len());
     (frame.closed, frame.two_sided) = (Some(made.closed), Some(made.two_sided));
-    frame.bbox_mm = Some(corners(&made.mesh.bounds()));
+    frame.bbox_mm = Some(corners(&mesh.bounds()));
     Ok(())
 }
 

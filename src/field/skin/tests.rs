@@ -100,3 +100,14 @@ fn a_sheet_that_crosses_itself_is_a_shell_all_over() {
     let sea = mesh(&SeaShell::default(), 0.05);
     assert!(Sides::of(&sea).pieces >= 1);
 }
+
+#[test]
+fn pieces_that_are_points_are_nothing() {
+    // fins that have not begun to grow: closed, and without area
+    let mut point = mesh(&ball(), 1.0);
+    point.points.iter_mut().for_each(|p| *p = DVec3::splat(3.0));
+    let mut both = cup();
+    both.append(&point);
+    let [alone, with] = [&cup(), &both].map(|m| volume(m, options(Some(1.0), Skin::Auto), 0.4));
+    assert_eq!(alone, with);
+}

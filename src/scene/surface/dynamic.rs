@@ -47,7 +47,12 @@ pub fn dynamic(e: &entry::Dynamic) -> Result<SurfaceFile, Problem> {
         "dynamic surface on {nu} x {nv} nodes, {} steps of {} to t = {duration}",
         e.steps, e.dt
     );
-    let motion = Arc::new(Dynamic::new(options).map_err(problem)?);
+    // one table for all components has no index
+    let one = matches!(e.control, PlainOr::Table(_));
+    let motion = Arc::new(Dynamic::new(options).map_err(|s| match problem(s) {
+        p if one => Problem::new(p.at.replace("control[0]", "control"), p.why),
+        p => p,
+    })?);
     let object = Parametric::Motion(scaled(motion, e.scale));
     Ok(SurfaceFile { duration: Some(duration), ..plain(Kind::Dynamic, object, story) })
 }

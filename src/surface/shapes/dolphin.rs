@@ -3,8 +3,9 @@
 use crate::surface::pde::{Boundary, Options};
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 
-/// The dolphin: body, tail flukes, dorsal fin, left and right side fin; about 320 mm from beak to flukes,
-/// nose to -Y, Z up. For the default options: `a` = 1, five modes and the remainder.
+/// The dolphin: body, tail flukes, dorsal fin, right and left side fin; about 320 mm from beak to
+/// flukes, nose to -X, Y up as the Klein bottle that it morphs with. For the default options: `a` = 1,
+/// five modes and the remainder.
 ///
 /// Every patch is closed by itself, a pillow between two folds: the body between the lines of the
 /// back and the belly, a fin between the middles of its two faces. The fins begin inside the body, so
@@ -24,14 +25,14 @@ const BACK: [f64; 13] =
 const BELLY: [f64; 13] =
     [-25.85, -5.75, 3.69, 0.44, -2.32, 1.23, 0.15, 0.17, 0.32, -0.02, -0.03, 0.0, -0.05];
 const WIDTH: [f64; 12] =
-    [22.29, -0.17, -6.28, 0.26, 1.57, 0.28, 0.97, 0.0, -0.22, -0.52, -0.14, 0.02];
+    [22.29, -0.17, -6.281, 0.26, 1.57, 0.28, 0.97, 0.0, -0.22, -0.52, -0.14, 0.02];
 
 fn body() -> Boundary {
     let line = |heights: [f64; 13]| -> Vec<DVec3> {
         let along = ALONG.iter().chain(std::iter::repeat(&0.0));
-        heights.iter().zip(along).map(|(z, y)| dvec3(0.0, *y, *z)).collect()
+        heights.iter().zip(along).map(|(y, x)| dvec3(*x, *y, 0.0)).collect()
     };
-    let rim = WIDTH.map(|x| DVec3::X * x);
+    let rim = WIDTH.map(|z| DVec3::Z * z);
     Boundary::pillow(&line(BACK), &line(BELLY), &rim, &Options::default())
 }
 
@@ -51,8 +52,8 @@ struct Fin {
 }
 
 const FLUKES: Fin = Fin {
-    root: dvec3(0.0, 131.0, -13.2),
-    axes: [DVec3::X, dvec3(0.0, 0.99, -0.139), dvec3(0.0, 0.139, 0.99)],
+    root: dvec3(131.0, -13.2, 0.0),
+    axes: [DVec3::Z, dvec3(0.99, -0.139, 0.0), dvec3(0.139, 0.99, 0.0)],
     span: &[0.0, 72.0],
     middle: &[30.1, 0.0, 17.36, 0.0, -1.86, 0.0, 2.41, 0.0, -1.65, 0.0, 1.12],
     half: &[2.6, 0.0, -1.4],
@@ -61,7 +62,7 @@ const FLUKES: Fin = Fin {
 
 const DORSAL: Fin = Fin {
     root: DVec3::ZERO,
-    axes: [DVec3::Z, DVec3::Y, DVec3::X],
+    axes: [DVec3::Y, DVec3::X, DVec3::Z],
     span: &[33.5, 31.5],
     middle: &[13.74, 11.89, 10.37],
     half: &[3.75, -2.75],
@@ -69,8 +70,8 @@ const DORSAL: Fin = Fin {
 };
 
 const SIDE: Fin = Fin {
-    root: dvec3(14.0, -72.0, -15.0),
-    axes: [dvec3(0.777, 0.12, -0.618), dvec3(-0.094, 0.993, 0.074), dvec3(0.622, 0.0, 0.783)],
+    root: dvec3(-72.0, -15.0, 14.0),
+    axes: [dvec3(0.12, -0.618, 0.777), dvec3(0.993, 0.074, -0.094), dvec3(0.0, 0.783, 0.622)],
     span: &[26.0, 32.0],
     middle: &[7.95, 17.19, 5.86],
     half: &[3.0, -2.0],
@@ -83,12 +84,13 @@ impl Fin {
     }
 
     fn patch_mirrored(&self) -> Boundary {
-        self.placed(&DAffine3::from_scale(dvec3(-1.0, 1.0, 1.0)))
+        self.placed(&DAffine3::from_scale(dvec3(1.0, 1.0, -1.0)))
     }
 
     fn placed(&self, by: &DAffine3) -> Boundary {
         let [out, back, up] = self.axes;
-        let frame = *by * DAffine3::from_mat3_translation(DMat3::from_cols(out, back, up), self.root);
+        let frame =
+            *by * DAffine3::from_mat3_translation(DMat3::from_cols(out, back, up), self.root);
         let get = |list: &[f64], n: usize| list.get(n).copied().unwrap_or(0.0);
         let face = |side: f64| -> Vec<DVec3> {
             (0..self.span.len().max(self.middle.len()).max(self.half.len()))

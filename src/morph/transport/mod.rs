@@ -1,0 +1,247 @@
+//! Morph by optimal transport: the Wasserstein barycentre of the shapes' matter, found by
+//! convolutions (Solomon et al. 2015).
+//!
+//! Each shape is a unit of mass spread evenly over its inside. With H the Gaussian
+//! exp(-r² / γ), scaling makes every shape's plan marginals agree:
+//!
+//! ```text
+//! a_j = m_j / H b_j,   m = d Π (H a_j)^λ_j,   b_j = m / H a_j,   d = √(d m / H d)
+//! ```
+//!
+//! The last factor takes the Gaussian's blur out again (Janati et al. 2020), so that a single shape
+//! is its own barycentre and edges stay sharp. γ falls to (2 samples)² in stages, which finds the
+//! far moves first. The result is where the density exceeds the level that encloses the weighted
+//! mean volume, made a signed distance on the same lattice.
+//!
+//! **The lattice** is coarser than the final one ([`Morph::notes`] says how coarse): what is thinner
+//! than a cell of it smears. A shape with all the weight is given back exactly, by itself and not by
+//! the lattice. Topology is not kept.
+
+mod gauss;
+
+use super::plan::{Course, MorphError, Part};
+use super::{Morph, whole};
+use crate::field::Shared;
+use crate::field::dense::Dense;
+use crate::grid::{Lattice, redistance};
+use crate::job::{Cancelled, Job};
+use crate::num::Aabb;
+use gauss::{Gauss, SHARE, flushed};
+use rayon::prelude::*;
+use std::sync::{Arc, OnceLock};
+
+/// Widths of the Gaussian, in samples, and the rounds at each at most.
+const STAGES: [(f64, u32); 3] = [(8.0, 15), (4.0, 20), (2.0, 60)];
+/// A stage ends when the mass that a round moves falls below this share.
+const STILL: f64 = 1e-3;
+/// Samples along the longest side at least and at most.
+const SIDES: [u32; 2] = [16, 256];
+
+/// Bytes held at the peak: three arrays a shape, six of the iteration.
+pub(super) fn bytes(domain: &Aabb, samples: u32, shapes: usize) -> f64 {
+    let n = f64::from(samples);
+    let size = domain.size() / domain.size().max_element();
+    let count = ((size * n).ceil() + 5.0).element_product();
+    let count = if count.is_finite() { count } else { n * n * n };
+    8.0 * count * (3.0 * shapes as f64 + 6.0)
+}
+
+pub(super) struct Transport {
+    shapes: Vec<Part>,
+    course: Course,
+    lattice: Lattice,
+    masses: OnceLock<Vec<Mass>>,
+}
+
+/// The matter of a shape on the lattice.
+struct Mass {
+    /// Share of the whole at each sample.
+    density: Vec<f64>,
+    /// Samples' worth of volume.
+    volume: f64,
+    /// Rows along x that hold any.
+    rows: Vec<bool>,
+}
+
+impl Transport {
+    pub fn new(shapes: Vec<Part>, course: Course, samples: u32) -> Result<Self, MorphError> {
+        if !(SIDES[0]..=SIDES[1]).contains(&samples) {
+            return Err(MorphError::Range {
+                what: "transport.samples".to_owned(),
+                expected: "16 to 256",
+                got: f64::from(samples),
+            });
+        }
+        let domain = whole::bounded(shapes.iter().map(|s| &s.field))?;
+        let step = domain.size().max_element() / f64::from(samples);
+        let lattice = whole::lattice(&domain, step, f64::INFINITY);
+        if let Some(empty) = shapes.iter().find(|s| !whole::meet(&[&s.field], step / 16.0)) {
+            return Err(MorphError::Hollow(empty.name.clone()));
+        }
+        Ok(Self { shapes, course, lattice, masses: OnceLock::new() })
+    }
+
+    fn masses(&self, job: &dyn Job) -> Result<&[Mass], Cancelled> {
+        if let Some(made) = self.masses.get() {
+            return Ok(made);
+        }
+        let one = |s: &Part| Mass::new(&s.field, &self.lattice, job);
+        let made: Vec<Mass> = self.shapes.iter().map(one).collect::<Result<_, _>>()?;
+        Ok(self.masses.get_or_init(|| made))
+    }
+}
+
+impl Morph for Transport {
+    fn at(&self, t: f64, job: &dyn Job) -> Result<Shared, Cancelled> {
+        let weights = self.course.at(t);
+        if let Some(j) = weights.iter().position(|&w| w >= 1.0 - 1e-12) {
+            return Ok(self.shapes[j].field.clone());
+        }
+        let masses = self.masses(job)?;
+        job.stage("transport");
+        let taking: Vec<(&Mass, f64)> =
+            masses.iter().zip(weights).filter(|(_, w)| *w > 0.0).collect();
+        let density = Barycentre::new(&self.lattice, &taking).run(job)?;
+        let volume: f64 = taking.iter().map(|(m, w)| m.volume * w).sum();
+        let level = level(&density, volume);
+        // as shares of the level, so that the samples fit f32
+        let samples: Vec<f32> = density.iter().map(|m| (1.0 - m / level) as f32).collect();
+        let distance = redistance(&self.lattice, &samples, job)?;
+        Ok(Arc::new(Dense::new(self.lattice, distance)))
+    }
+
+    fn domain(&self) -> Aabb {
+        whole::domain(self.shapes.iter().map(|s| &s.field))
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let ([x, y, z], step) = (self.lattice.size, self.lattice.step);
+        vec![format!(
+            "transport: moved on a lattice of {x} x {y} x {z} samples, {step:.2} mm apart"
+        )]
+    }
+}
+
+impl Mass {
+    fn new(field: &Shared, lattice: &Lattice, job: &dyn Job) -> Result<Self, Cancelled> {
+        let step = lattice.step as f32;
+        let distance = whole::samples(&**field, lattice, job)?;
+        // the share of a sample's cube that lies inside, to first order
+        let share = |d: f32| f64::from((0.5 - d / step).clamp(0.0, 1.0));
+        let mut density: Vec<f64> = distance.into_iter().map(share).collect();
+        let volume: f64 = density.iter().sum();
+        density.iter_mut().for_each(|m| *m /= volume.max(f64::MIN_POSITIVE));
+        let rows = density.chunks_exact(lattice.size[0] as usize);
+        let rows = rows.map(|r| r.iter().any(|&m| m > 0.0)).collect();
+        Ok(Self { density, volume, rows })
+    }
+}
+
+/// The density above which `volume` samples lie.
+fn level(density: &[f64], volume: f64) -> f64 {
+    let mut sorted: Vec<f64> = density.iter().copied().filter(|&m| m > 0.0).collect();
+    let rank = (volume.round() as usize).clamp(1, sorted.len().max(1));
+    if sorted.len() < 2 {
+        return f64::MIN_POSITIVE;
+    }
+    let rank = rank.min(sorted.len() - 1);
+    let (above, at, _) = sorted.select_nth_unstable_by(rank, |a, b| b.total_cmp(a));
+    // between the last one inside and the first one outside
+    let last = above.iter().copied().fold(f64::INFINITY, f64::min);
+    0.5 * (last + *at)
+}
+
+/// The scaling iteration.
+struct Barycentre<'a> {
+    gauss: Gauss,
+    masses: &'a [(&'a Mass, f64)],
+    /// The scalings b_j.
+    b: Vec<Vec<f64>>,
+    /// The factor against the blur.
+    d: Vec<f64>,
+    m: Vec<f64>,
+}
+
+impl<'a> Barycentre<'a> {
+    fn new(lattice: &Lattice, masses: &'a [(&'a Mass, f64)]) -> Self {
+        let n = lattice.samples() as usize;
+        Self {
+            gauss: Gauss::new(lattice.size),
+            masses,
+            b: vec![vec![1.0; n]; masses.len()],
+            d: vec![1.0; n],
+            m: vec![0.0; n],
+        }
+    }
+
+    fn run(mut self, job: &dyn Job) -> Result<Vec<f64>, Cancelled> {
+        let mut last = f64::INFINITY;
+        let all: u32 = STAGES.iter().map(|s| s.1).sum();
+        let mut count = 0;
+        for (width, rounds) in STAGES {
+            let gamma = width * width;
+            self.gauss.set(gamma);
+            if last.is_finite() {
+                // a scaling is exp(potential / γ), and potentials carry over
+                let power = last / gamma;
+                let fields = self.b.iter_mut().chain([&mut self.d]);
+                fields.for_each(|x| {
+                    x.par_iter_mut().with_min_len(SHARE).for_each(|x| *x = scaled(*x, power))
+                });
+            }
+            last = gamma;
+            for round in 0..rounds {
+                job.done(f64::from(count + round) / f64::from(all));
+                if self.round(job)? < STILL {
+                    break;
+                }
+            }
+            count += rounds;
+        }
+        Ok(self.m)
+    }
+
+    /// One round; the share of the mass that it moved.
+    fn round(&mut self, job: &dyn Job) -> Result<f64, Cancelled> {
+        let mut spread = Vec::with_capacity(self.masses.len());
+        for ((mass, _), b) in self.masses.iter().zip(&self.b) {
+            let mut a = self.gauss.onto(b, &mass.rows, job)?;
+            let ratio = |(a, &m): (&mut f64, &f64)| *a = divided(m, *a);
+            a.par_iter_mut().with_min_len(SHARE).zip(&mass.density).for_each(ratio);
+            spread.push(self.gauss.from(a, job)?);
+        }
+        let weights: Vec<f64> = self.masses.iter().map(|m| m.1).collect();
+        let mean = |n: usize| {
+            let logs: f64 = spread.iter().zip(&weights).map(|(s, w)| w * s[n].ln()).sum();
+            let m = self.d[n] * logs.exp();
+            if m.is_finite() { flushed(m) } else { 0.0 }
+        };
+        let m: Vec<f64> = (0..self.d.len()).into_par_iter().with_min_len(SHARE).map(mean).collect();
+        for (b, s) in self.b.iter_mut().zip(&spread) {
+            b.par_iter_mut()
+                .with_min_len(SHARE)
+                .zip(s)
+                .zip(&m)
+                .for_each(|((b, s), m)| *b = divided(*m, *s));
+        }
+        drop(spread);
+        let back = self.gauss.from(self.d.clone(), job)?;
+        let factor = |((d, h), m): ((&mut f64, &f64), &f64)| *d = divided(*d * m, *h).sqrt();
+        self.d.par_iter_mut().with_min_len(SHARE).zip(&back).zip(&m).for_each(factor);
+        // summed in one order, so that every number of threads stops at the same round
+        let moved: f64 = m.iter().zip(&self.m).map(|(a, b)| (a - b).abs()).sum();
+        let total: f64 = m.iter().sum();
+        self.m = m;
+        Ok(moved / total.max(f64::MIN_POSITIVE))
+    }
+}
+
+/// 0 where there is nothing to divide by: what is so far off takes no part.
+fn divided(a: f64, b: f64) -> f64 {
+    let q = a / b;
+    if b > 0.0 && q.is_finite() { flushed(q) } else { 0.0 }
+}
+
+fn scaled(x: f64, power: f64) -> f64 {
+    flushed(x.powf(power)).min(1e200)
+}
