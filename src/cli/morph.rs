@@ -138,7 +138,8 @@ impl Morph {
         }
         names.unnamed.clone_from(&recipe.name);
         let file_name = |name: &str| Path::new(name).file_name().map(|n| n.display().to_string());
-        let (mesh, picture) = (file_name(&names.mesh), names.picture.as_deref().and_then(file_name));
+        let (mesh, picture) =
+            (file_name(&names.mesh), names.picture.as_deref().and_then(file_name));
         let written = |chosen: &Recipe| {
             let mut chosen = chosen.clone();
             (chosen.output.mesh, chosen.output.picture) = (mesh.clone(), picture.clone());

@@ -1,8 +1,8 @@
 //! Entries of `[[features]]`: elements on the shapes that correspond to each other.
 
+use super::method::InnerEntry;
 use super::primitive::{self, is_default};
 use super::shapes::ShapeEntry;
-use super::method::InnerEntry;
 use super::source::join;
 use super::time::TimeFn;
 use super::{

@@ -2,7 +2,7 @@
 
 use super::AnimationReport;
 use crate::check::{Crumbs, Health};
-use crate::scene::{Input, Search, LiveShape};
+use crate::scene::{Input, LiveShape, Search};
 use serde::Serialize;
 
 /// Seconds of each stage.

@@ -3,7 +3,7 @@
 use super::{SceneError, plan, suggest};
 use crate::job::Job;
 use crate::morph::{self, Choice, Course, Inner, Outlook, Plan, Style, Tuning};
-use crate::parts::{self, Guess};
+use crate::parts::Guess;
 use crate::recipe::{
     FeatureMorph, InnerEntry, MethodEntry, MorphEntry, Recipe, Source, StyleEntry, TimeFn, Weights,
 };

@@ -1,9 +1,9 @@
 //! Shapes read and placed: enough to know how large the work will be.
 
-use super::live::{self, Placed, Stop, Want};
-use super::variant::{Parts, Variant, asked};
 use super::auto::{self, Search};
 use super::live::LiveShape;
+use super::live::{self, Placed, Stop, Want};
+use super::variant::{Parts, Variant, asked};
 use super::{Scene, SceneError, mesh_element, plan, scheme};
 use crate::element::Element;
 use crate::grid::Lattice;

@@ -1,8 +1,8 @@
 //! Rows of weights -> the courses of features and wholes.
 
+use super::plan::function;
 use crate::element::Element;
 use crate::morph::{Course, Feature};
-use super::plan::function;
 use crate::recipe::{FeatureEntry, FeatureMorph, MorphEntry, Weights};
 use crate::weight::Ease;
 

@@ -1,7 +1,7 @@
 //! A hybrid at one time on coarse samples, ready to be tried in many ways.
 
-use super::options::Kin;
 use super::Outlook;
+use super::options::Kin;
 use crate::job::{self, Cancelled, Job};
 use crate::morph::Morph;
 use crate::morph::hybrid::{Hybrid, Looked};
