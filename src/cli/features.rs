@@ -3,6 +3,8 @@
 mod picture;
 mod write;
 
+pub(super) use write::beside;
+
 use super::failure::Failure;
 use super::inputs::Reading;
 use super::watch::Watch;

@@ -9,10 +9,10 @@ use clap::{Args, ValueEnum};
 use fieldgraft::mesh::check_output;
 use fieldgraft::recipe::{
     GridEntry, MesherEntry, MethodEntry, MorphEntry, OutputEntry, PlaceLike, PlainOr, Recipe,
-    ShapeEntry, Source, Times, VERSION, word,
+    ShapeEntry, Source, StyleEntry, Times, VERSION, word,
 };
-use fieldgraft::run;
-use fieldgraft::scene::suggest;
+use fieldgraft::run::{self, Report, RunError};
+use fieldgraft::scene::{Search, suggest};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -31,9 +31,12 @@ pub struct Morph {
     /// Weights of the meshes instead of a time, such as 2,1,1
     #[arg(long, value_delimiter = ',', value_name = "W", conflicts_with = "t")]
     weights: Vec<f64>,
-    /// How: linear, level-set, transport, or space-time (the default)
+    /// How: auto (the default: parts are found and paired), linear, space-time, level-set or transport
     #[arg(long, value_name = "METHOD", value_parser = method)]
     method: Option<MethodEntry>,
+    /// What hybrids of auto look like: average (the default), swap, grow or erode
+    #[arg(long, value_name = "STYLE", value_parser = style)]
+    style: Option<StyleEntry>,
     /// How the meshes are laid over each other: box (all stand where the first does), pose (each as
     /// chairs do) or none
     #[arg(long, value_enum, default_value_t = Align::Box)]
@@ -42,7 +45,7 @@ pub struct Morph {
     reading: Reading,
     #[command(flatten)]
     fineness: Fineness,
-    /// Also a picture: PNG, with `{t}` where there are several times
+    /// Also a picture: PNG, with `{t}` where there are several times; auto makes one beside OUT
     #[arg(long, value_name = "PNG")]
     picture: Option<String>,
     /// Drop loose pieces below this share of the volume
@@ -51,7 +54,7 @@ pub struct Morph {
     /// How triangles are made: print, sharp (keeps edges and corners) or preview
     #[arg(long, value_name = "MESHER", value_parser = inputs::mesher)]
     mesher: Option<MesherEntry>,
-    /// Also write the recipe that this command stands for
+    /// Also write the recipe that this command stands for; auto writes it beside OUT
     #[arg(long, value_name = "TOML")]
     recipe: Option<PathBuf>,
     #[command(flatten)]
@@ -73,6 +76,10 @@ fn times(text: &str) -> Result<Times, String> {
     text.parse()
 }
 
+fn style(text: &str) -> Result<StyleEntry, String> {
+    word(text)
+}
+
 fn method(text: &str) -> Result<MethodEntry, String> {
     match word(text)? {
         MethodEntry::FeatureVolume
@@ -89,8 +96,10 @@ impl Morph {
     /// Makes the hybrids.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
         let recipe = self.recipe(watch)?;
-        let text = toml::to_string(&recipe)
-            .map_err(|e| Failure::new(Failure::FAILED, format!("recipe: {e}")))?;
+        if self.auto() {
+            return self.run_auto(recipe, watch);
+        }
+        let text = text(&recipe)?;
         if let Some(path) = self.recipe.as_ref().filter(|_| !self.making.dry_run) {
             run::place_text(path, &text, self.making.force)?;
         }
@@ -103,8 +112,90 @@ impl Morph {
             names: convert::names(&self.output, self.picture.clone()),
             file: None,
             recipe,
+            written: None,
         };
         steps::make(task, &self.making, watch)
+    }
+
+    fn auto(&self) -> bool {
+        self.method.unwrap_or_default() == MethodEntry::Auto
+    }
+
+    /// Makes the hybrids with what is found and chosen; the recipe of it goes beside them.
+    fn run_auto(&self, recipe: Recipe, watch: &Watch) -> Result<(), Failure> {
+        let beside = |extension: &str| {
+            Path::new(&self.output).with_extension(extension).display().to_string()
+        };
+        let picture = self.picture.clone().unwrap_or_else(|| beside("png"));
+        let mut names = convert::names(&self.output, Some(picture));
+        let bare = names.report.replace(".run.json", ".toml");
+        let path = self.recipe.clone().unwrap_or_else(|| PathBuf::from(bare));
+        if !self.making.dry_run {
+            check_output(Path::new(&self.output.replace("{t}", "0")), true)?;
+            if path.symlink_metadata().is_ok() && !self.making.force {
+                return Err(RunError::Exists(path).into());
+            }
+        }
+        names.unnamed.clone_from(&recipe.name);
+        let file_name = |name: &str| Path::new(name).file_name().map(|n| n.display().to_string());
+        let (mesh, picture) =
+            (file_name(&names.mesh), names.picture.as_deref().and_then(file_name));
+        let written = |chosen: &Recipe| {
+            let mut chosen = chosen.clone();
+            (chosen.output.mesh, chosen.output.picture) = (mesh.clone(), picture.clone());
+            for entry in chosen.shapes.values_mut() {
+                let solid = match &mut entry.solid {
+                    Some(PlainOr::Plain(file)) => Some(file),
+                    _ => None,
+                };
+                for file in entry.mesh.iter_mut().chain(solid).chain(&mut entry.surface) {
+                    *file = features::beside(&path, file);
+                }
+            }
+            Ok(format!("{ABOUT}{}", text(&chosen)?))
+        };
+        let task = Task {
+            source: Source::unplaced(text(&recipe)?, Path::new("")),
+            beside: Path::new(""),
+            names,
+            file: None,
+            recipe,
+            written: Some(&written),
+        };
+        let Some(made) = steps::made(task, &self.making, watch)? else { return Ok(()) };
+        run::place_text(&path, &made.text, self.making.force)?;
+        self.tell(&made.report, &path, watch);
+        steps::finish(&made.report, &self.making, watch)
+    }
+
+    /// What was found, what was kept, what to try next.
+    fn tell(&self, report: &Report, recipe: &Path, watch: &Watch) {
+        let found: Vec<&str> =
+            report.notes.iter().filter(|n| n.ends_with(')')).map(String::as_str).collect();
+        if report.searches.is_empty() {
+            watch.say("found: no parts to pair; the whole shapes were blended by space-time");
+        } else {
+            watch.say(&format!("found: {}", found.join("; ")));
+        }
+        let kept = report.frames.iter().filter_map(|f| {
+            let pieces = f.pieces?;
+            let pieces = if pieces == 1 { "1 piece".into() } else { format!("{pieces} pieces") };
+            let t = run::time_word(f.t);
+            Some(format!("t {t}: {:.0}% of the mean volume, {pieces}", f.volume_kept? * 100.0))
+        });
+        let did = report.searches.first().map_or_else(String::new, did);
+        watch.say(&format!("kept: {}{did}", kept.collect::<Vec<_>>().join("; ")));
+        let recipe = recipe.display();
+        watch.say(&match report.searches.first().map(|s| s.style) {
+            None => format!("next: place elements in {recipe}, then `fieldgraft run {recipe}`"),
+            Some(StyleEntry::Swap) => {
+                format!("next: --style average; or edit {recipe}, then `fieldgraft run {recipe}`")
+            }
+            Some(_) => format!(
+                "next: --style swap takes whole parts of each; or edit {recipe}, then \
+                 `fieldgraft run {recipe}`"
+            ),
+        });
     }
 
     /// The recipe this command line stands for.
@@ -136,8 +227,12 @@ impl Morph {
                 }
             }
         }
+        if self.style.is_some() && !self.auto() {
+            return Err(Failure::usage("--style is for the method auto"));
+        }
         let mut morph = MorphEntry {
-            method: Some(self.method.unwrap_or(MethodEntry::SpaceTime)),
+            method: Some(self.method.unwrap_or_default()),
+            style: self.style,
             weights: self.rows(&names)?,
             ..MorphEntry::default()
         };
@@ -179,6 +274,28 @@ impl Morph {
         let row = names.iter().cloned().zip(self.weights.iter().copied()).collect();
         Ok(BTreeMap::from([("default".to_owned(), row)]))
     }
+}
+
+/// What stands above a recipe that was chosen.
+const ABOUT: &str = "\
+# Chosen by `fieldgraft morph`: features found by machine, parameters by a search. Edit and run it.
+# Millimetres, z up; fronts look to -y, left is -x.
+";
+
+fn text(recipe: &Recipe) -> Result<String, Failure> {
+    toml::to_string(recipe).map_err(|e| Failure::new(Failure::FAILED, format!("recipe: {e}")))
+}
+
+/// What the features do, in words: the functions, and the features of each.
+fn did(search: &Search) -> String {
+    let mut by: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for (name, part) in &search.features {
+        let word = part.inner.map(|i| format!("{i:?}").to_lowercase()).unwrap_or_default();
+        let taken = search.weights.get(name).map(|row| row.keys().cloned().collect::<Vec<_>>());
+        let what = taken.map_or(word.clone(), |of| format!("{word} of {}", of.join(" and ")));
+        by.entry(what).or_default().push(name);
+    }
+    by.iter().map(|(what, names)| format!("; {what}: {}", names.join(", "))).collect()
 }
 
 /// `a`, `b`, ... `z`, then `s27` and on.

@@ -85,7 +85,11 @@ impl Run {
         let names = self.names(&recipe, &source)?;
         let beside = self.recipe.parent().unwrap_or(Path::new(""));
         let file = Some(self.recipe.display().to_string());
-        steps::make(Task { recipe, source, beside, names, file }, &self.making, watch)
+        steps::make(
+            Task { recipe, source, beside, names, file, written: None },
+            &self.making,
+            watch,
+        )
     }
 
     /// The recipe of the one shape that a file describes, under the file's name.

@@ -28,24 +28,42 @@ pub struct Task<'a> {
     pub names: Names,
     /// The recipe's file, if it has one.
     pub file: Option<String>,
+    /// Writes down the recipe that is carried out; by default its text is the source.
+    pub written: Option<&'a dyn Fn(&Recipe) -> Result<String, Failure>>,
 }
 
-/// Makes everything, or says how large it would be.
+/// What was made.
+pub struct Made {
+    /// The report.
+    pub report: Report,
+    /// The text of the recipe that was carried out.
+    pub text: String,
+}
+
+/// Makes everything and judges it, or says how large it would be.
 pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failure> {
+    match made(work, making, watch)? {
+        Some(made) => finish(&made.report, making, watch),
+        None => Ok(()),
+    }
+}
+
+/// Makes everything; nothing but a prediction with `--dry-run`.
+pub fn made(work: Task<'_>, making: &Making, watch: &Watch) -> Result<Option<Made>, Failure> {
     let start = Instant::now();
-    let Task { recipe, source, beside, names, file } = work;
+    let Task { recipe, source, beside, names, file, written } = work;
     let frames = frames(&recipe);
     if !making.dry_run {
         check_outputs(&names, &frames, making.force)?;
     }
     let mesher = recipe.output.mesher;
+    let given = source.text().to_owned();
     let playing = Playing::of(&recipe.output);
     let style = Style::default();
     let with_animations = |mut p: Prediction| {
         p.memory_bytes += animation_memory(&p, &names.animations, style.size);
         p
     };
-    let recipe_hash = sha256(source.text().as_bytes());
     let coarse = making.dry_run.then(|| (coarser(&recipe), source.clone()));
     let draft = Draft::open(recipe, source, beside, watch).map_err(plain)?;
     let first = with_animations(predict(&draft));
@@ -62,10 +80,12 @@ pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failur
         watch.stage("predict");
         let p = probe(&scene, &first, by, watch)?;
         tell_prediction(&p, making, watch)?;
-        return refuse(&p, limit);
+        return refuse(&p, limit).map(|()| None);
     }
     refuse(&first, limit)?;
     let scene = draft.build(watch).map_err(plain)?;
+    let text = written.map_or(Ok(given), |write| write(&scene.recipe))?;
+    let recipe_hash = sha256(text.as_bytes());
     scene.notes.iter().for_each(|n| watch.say(n));
     let settings = Settings {
         names,
@@ -92,11 +112,12 @@ pub fn make(work: Task<'_>, making: &Making, watch: &Watch) -> Result<(), Failur
         seconds_shapes: seconds,
         seconds_total: seconds,
         notes: scene.notes.clone(),
+        searches: scene.searches.clone(),
         ..Report::default()
     };
     let mut told = |f: &FrameReport| tell(f, watch);
     let report = run::run(&scene, &settings, report, watch, &mut told)?;
-    finish(&report, making, watch)
+    Ok(Some(Made { report, text }))
 }
 
 /// Whether every result can be written, before anything is made.

@@ -24,6 +24,8 @@ pub(super) struct Placed {
     pub offset: f64,
     /// Automatic parameters.
     pub local: Local,
+    /// By how much each shape is thinned here, mm.
+    pub thin: Vec<f64>,
 }
 
 /// A hybrid at one time. Without features the shapes are looked up where they stand.
@@ -33,6 +35,7 @@ pub(super) struct Hybrid {
     /// Weights and parameters without features.
     pub lam: Vec<f64>,
     pub local: Local,
+    pub thin: Vec<f64>,
     pub blend: Blend,
     pub mix: Mix,
     pub weighting: Weighting,
@@ -48,7 +51,7 @@ pub(super) struct Looked {
     pub lam: Vec<f64>,
     /// Feature weights at each point, n a row: those of positions, and the sharp ones.
     w: Vec<f64>,
-    sharp: Vec<f64>,
+    pub sharp: Vec<f64>,
     /// Distances to the features, n a row.
     d: Vec<f64>,
 }
@@ -134,6 +137,16 @@ impl Hybrid {
         }
     }
 
+    /// Thins the shapes' values at a row of sharp weights.
+    fn thin(&self, g: &mut [f64], w: &[f64]) {
+        if self.features.is_empty() {
+            g.iter_mut().zip(&self.thin).for_each(|(g, t)| *g += t);
+        }
+        for (w, f) in w.iter().zip(&self.features) {
+            g.iter_mut().zip(&f.thin).for_each(|(g, t)| *g += w * t);
+        }
+    }
+
     fn values_by_maps(&self, at: &[DVec3], out: &mut [f64]) {
         let (k, n) = self.counts();
         let mut l = Looked::default();
@@ -146,6 +159,7 @@ impl Hybrid {
             } else {
                 (&[][..], &[][..])
             };
+            self.thin(&mut l.g[row.clone()], w);
             *f = self.mix.value(&l.g[row.clone()], &l.lam[row], &self.local(w));
             for (i, p) in self.features.iter().enumerate() {
                 *f -= l.w[r * n + i] * offset(p.offset, d[i]);
@@ -168,8 +182,9 @@ impl Hybrid {
                     *y = feature.maps[j].pull(p);
                 }
                 shape.values(&y, &mut one);
+                let thin = feature.thin.get(j).copied().unwrap_or(0.0);
                 for (r, &v) in one.iter().enumerate() {
-                    g[r * k + j] = v;
+                    g[r * k + j] = v + thin;
                 }
             }
             for (r, f) in out.iter_mut().enumerate() {
@@ -186,7 +201,9 @@ impl Hybrid {
         let (k, n) = self.counts();
         let mut order = Vec::new();
         if n == 0 {
-            let g: Vec<_> = self.shapes.iter().map(|f| f.bound(b)).collect();
+            let thin = |j: usize| self.thin.get(j).copied().unwrap_or(0.0);
+            let g: Vec<_> =
+                self.shapes.iter().enumerate().map(|(j, f)| f.bound(b).shift(thin(j))).collect();
             let lam: Vec<_> = self.lam.iter().map(|&l| Interval::point(l)).collect();
             return self.mix.bound(&g, &lam, &self.local.into(), &mut order);
         }
@@ -201,7 +218,8 @@ impl Hybrid {
         let mut g = Vec::with_capacity(k);
         let mut lam = Vec::with_capacity(k);
         for j in 0..k {
-            g.push(self.shapes[j].bound(&self.image(j, b, &w, &mut order)));
+            let thin = convex(&|f| f.thin.get(j).copied().unwrap_or(0.0), &mut order);
+            g.push(self.shapes[j].bound(&self.image(j, b, &w, &mut order)) + thin);
             lam.push(convex(&|f| f.lam[j], &mut order).clamp(0.0, 1.0));
         }
         let local = LocalRange {
@@ -255,8 +273,9 @@ impl Hybrid {
                 if w[i].hi <= 0.0 {
                     return Interval::point(0.0);
                 }
-                let g: Vec<_> =
-                    self.shapes.iter().zip(&f.maps).map(|(s, m)| s.bound(&m.image(b))).collect();
+                let thin = |j: usize| f.thin.get(j).copied().unwrap_or(0.0);
+                let bound = |(j, s): (usize, &Shared)| s.bound(&f.maps[j].image(b)).shift(thin(j));
+                let g: Vec<_> = self.shapes.iter().enumerate().map(bound).collect();
                 let lam: Vec<_> = f.lam.iter().map(|&l| Interval::point(l)).collect();
                 let v = self.mix.bound(&g, &lam, &f.local.into(), &mut order);
                 v - offset_range(f.offset, d[i])

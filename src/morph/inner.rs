@@ -99,7 +99,7 @@ fn least_shifted(g: &[f64], lam: &[f64], by: f64, skip: Option<usize>) -> f64 {
 /// The dominant shape whole, and of every other shape what lies within `reach * ratio` of the rest
 /// (GRAFT.md, recipe E, in the house's sign). The rest leaves the shape itself out: with it the
 /// whole of a lesser shape would be there from half the greatest weight on.
-fn grow(g: &[f64], lam: &[f64], reach: f64) -> f64 {
+pub(super) fn grow(g: &[f64], lam: &[f64], reach: f64) -> f64 {
     let top = greatest(lam);
     let mut least = f64::INFINITY;
     for (j, (&v, &l)) in g.iter().zip(lam).enumerate() {

@@ -1,9 +1,9 @@
 //! Automatic parameters, measured on the shapes as they lie in the hybrid's frames (GRAFT.md,
 //! recipe E; METHODS B).
 
-use super::hybrid::{Hybrid, Looked};
-use super::inner::Local;
-use super::plan::{Form, SpaceTime};
+use super::hybrid::{Hybrid, Looked, Placed};
+use super::inner::{Local, grow};
+use super::plan::{Form, Inner, SpaceTime};
 use super::space_time::{Bounded, height_for_volume};
 use crate::job::{self, Cancelled, Job};
 use crate::num::Aabb;
@@ -20,6 +20,16 @@ const LEAST_REACH: f64 = 20.0;
 const REACH_MARGIN: f64 = 1.1;
 /// Largest level of the linear form, mm: more fattens thin members instead of mending them.
 const LEVEL_CAP: f64 = 12.0;
+/// Largest share of its half thickness by which a shape is thinned: more breaks its thinner members.
+const THINNEST: f64 = 0.4;
+/// Largest share by which a shape is thickened where the merged shapes have too little volume.
+const THICKEST: f64 = 0.3;
+/// A share at which even a shape of nine tenths of the weight is at its limit.
+const LARGEST_SHARE: f64 = 2.0;
+/// Halvings of the range of shares: to a thousandth.
+const HALVINGS: u32 = 12;
+/// Ratio of the weights from which on a lesser shape is there whole: below it parts come and go.
+const WHOLE_FROM: f64 = 0.3;
 /// Largest height of the space-time blend in units of the reach: near t = 0 and 1 the blend is weak,
 /// and the height that would keep the volume grows without bound.
 const HEIGHT_CAP: f64 = 4.0;
@@ -27,8 +37,79 @@ const HEIGHT_CAP: f64 = 4.0;
 /// over the first shape, and only the blend says that this is inside.
 const CYLINDERS_FLOOR: f64 = 0.02;
 
-/// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes.
-fn local(g: &[f64], lam: &[f64]) -> Local {
+/// What is measured for one feature.
+pub(super) struct Measured {
+    pub local: Local,
+    /// How much each shape is thinned, mm.
+    pub thin: Vec<f64>,
+}
+
+/// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes; `sizes` are the
+/// volumes of their elements over that of the result's.
+pub(super) fn measured(g: &[f64], lam: &[f64], sizes: &[f64], inner: Inner) -> Measured {
+    let (mut local, wanted) = local(g, lam, sizes);
+    let mut thin = vec![0.0; lam.len()];
+    match inner {
+        Inner::Linear => (local.apart, local.level) = (0.0, 0.0),
+        Inner::Mean => local.apart = 0.0,
+        Inner::Grow | Inner::Erode | Inner::SpaceTime => local.apart = 1.0,
+        Inner::Merge => {
+            local.apart = 1.0;
+            local.reach /= WHOLE_FROM;
+            thin = thinning(g, lam, local.reach, wanted);
+        }
+        Inner::Auto => {}
+    }
+    Measured { local, thin }
+}
+
+/// How much each shape is thinned (thickened, where negative) so that the merged shapes fill `wanted`
+/// samples: shares of the half thickness of each, larger for those that weigh less.
+fn thinning(g: &[f64], lam: &[f64], reach: f64, wanted: f64) -> Vec<f64> {
+    let k = lam.len();
+    let (mut count, mut depth) = (vec![0u64; k], vec![0.0; k]);
+    for row in g.chunks_exact(k) {
+        for (j, &v) in row.iter().enumerate() {
+            if v < 0.0 {
+                count[j] += 1;
+                depth[j] -= v;
+            }
+        }
+    }
+    // depths in a plate run evenly from none to its half thickness
+    let half = |j: usize| if count[j] > 0 { 2.0 * depth[j] / count[j] as f64 } else { 0.0 };
+    let half: Vec<f64> = (0..k).map(|j| if lam[j] > 0.0 { half(j) } else { 0.0 }).collect();
+    // by weight: at one half all shares are equal, at one there is nothing to thin
+    let thin = |share: f64| -> Vec<f64> {
+        let by = |(h, l): (&f64, &f64)| {
+            let by = (share * 2.0 * (1.0 - l)).clamp(-THICKEST, THINNEST);
+            (by * h).max(-LEVEL_CAP)
+        };
+        half.iter().zip(lam).map(by).collect()
+    };
+    let mut row = vec![0.0; k];
+    let mut inside = |share: f64| {
+        let thin = thin(share);
+        let mut n = 0u64;
+        for g in g.chunks_exact(k) {
+            for (r, (g, t)) in row.iter_mut().zip(g.iter().zip(&thin)) {
+                *r = g + t;
+            }
+            n += u64::from(grow(&row, lam, reach) < 0.0);
+        }
+        n as f64
+    };
+    // at these shares every shape is at one of its limits, unless it is there alone
+    let (mut lo, mut hi) = (-LARGEST_SHARE, LARGEST_SHARE);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (lo + hi);
+        if inside(middle) > wanted { lo = middle } else { hi = middle }
+    }
+    thin(hi)
+}
+
+/// Parameters of one feature, and how many samples the mean volume is.
+fn local(g: &[f64], lam: &[f64], sizes: &[f64]) -> (Local, f64) {
     let k = lam.len();
     let present: Vec<usize> = (0..k).filter(|&j| lam[j] > 0.0).collect();
     let (mut far, mut depth) = (0.0f64, 0.0f64);
@@ -42,7 +123,7 @@ fn local(g: &[f64], lam: &[f64]) -> Local {
             most = most.max(row[j]);
             if row[j] < 0.0 {
                 inside += 1;
-                wanted += lam[j];
+                wanted += lam[j] * sizes.get(j).copied().unwrap_or(1.0);
                 depth = depth.max(-row[j]);
             }
         }
@@ -56,12 +137,13 @@ fn local(g: &[f64], lam: &[f64]) -> Local {
     }
     let overlap = if either > 0 { both as f64 / either as f64 } else { 1.0 };
     let level = if present.len() > 1 { level(&mut means, wanted) } else { 0.0 };
-    Local {
+    let local = Local {
         reach: (far * REACH_MARGIN).max(LEAST_REACH),
         depth: (depth * REACH_MARGIN).max(1.0),
         apart: ((0.5 - overlap) / 0.3).clamp(0.0, 1.0),
         level,
-    }
+    };
+    (local, wanted)
 }
 
 /// The level below which `wanted` of the means lie, within the cap.
@@ -74,19 +156,36 @@ fn level(means: &mut [f64], wanted: f64) -> f64 {
     level.clamp(0.0, LEVEL_CAP)
 }
 
+/// Volumes of the shapes' elements over that of the result's.
+pub(super) fn sizes(f: &Placed) -> Vec<f64> {
+    let own = f.element.half.element_product();
+    f.maps.iter().map(|m| m.to.half.element_product() / own).collect()
+}
+
 /// Measures the features of a hybrid, or the whole shapes over `domain` where it has none.
-pub(super) fn locals(h: &Hybrid, domain: &Aabb, job: &dyn Job) -> Result<Vec<Local>, Cancelled> {
+pub(super) fn locals(
+    h: &Hybrid,
+    inners: &[Inner],
+    domain: &Aabb,
+    job: &dyn Job,
+) -> Result<Vec<Measured>, Cancelled> {
     if h.features.is_empty() {
         let looked = look(h, &lattice(domain), job)?;
-        return Ok(vec![local(&looked.g, &h.lam)]);
+        let inner = inners.first().copied().unwrap_or(Inner::Auto);
+        return Ok(vec![measured(&looked.g, &h.lam, &[], inner)]);
     }
-    h.features
-        .iter()
-        .map(|f| {
-            let at: Vec<DVec3> = cube(FEATURE_SIDE).map(|q| f.element.to_world(q)).collect();
-            Ok(local(&look(h, &at, job)?.g, &f.lam))
-        })
-        .collect()
+    let all = rows(h, job)?;
+    let each = h.features.iter().zip(inners).zip(&all);
+    Ok(each.map(|((f, &inner), rows)| measured(rows, &f.lam, &sizes(f), inner)).collect())
+}
+
+/// Values of the shapes at the samples of each feature, a row a sample.
+pub(super) fn rows(h: &Hybrid, job: &dyn Job) -> Result<Vec<Vec<f64>>, Cancelled> {
+    let one = |f: &Placed| {
+        let at: Vec<DVec3> = cube(FEATURE_SIDE).map(|q| f.element.to_world(q)).collect();
+        Ok(look(h, &at, job)?.g)
+    };
+    h.features.iter().map(one).collect()
 }
 
 /// Chooses what the user left open of the space-time blend.

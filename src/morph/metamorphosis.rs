@@ -36,6 +36,9 @@ impl Metamorphosis {
             check_course(&f.morph, k, &f.name)?;
             check_course(&f.deform, k, &f.name)?;
             positive(f.offset.is_finite(), "offset", "a finite number of mm", f.offset)?;
+            if f.inner.is_some_and(|i| !(i.by_feature() && plan.inner.by_feature())) {
+                return Err(MorphError::Inner(f.name.clone()));
+            }
         }
         if let Frames::Of(j) = plan.frames {
             positive(j < k, "frames", "the index of a shape", j as f64)?;
@@ -62,44 +65,62 @@ impl Metamorphosis {
                     lam: f.morph.at(t),
                     offset: f.offset_at(t),
                     local: UNMEASURED,
+                    thin: Vec::new(),
                 }
             })
             .collect()
     }
 }
 
-impl Morph for Metamorphosis {
-    fn at(&self, t: f64, job: &dyn Job) -> Result<Shared, Cancelled> {
+impl Metamorphosis {
+    /// The hybrid at `t` before anything is measured.
+    pub fn unmeasured(&self, t: f64) -> Hybrid {
         let plan = &self.plan;
-        let mut h = Hybrid {
+        Hybrid {
             shapes: plan.shapes.iter().map(|s| s.field.clone()).collect(),
             features: self.place(t),
             lam: plan.course.at(t),
             local: UNMEASURED,
+            thin: Vec::new(),
             blend: plan.blend,
             mix: match plan.inner {
+                _ if plan.features.iter().any(|f| f.inner.is_some()) => Mix::Auto,
+                Inner::Linear | Inner::SpaceTime => Mix::Linear,
                 Inner::Grow => Mix::Grow,
                 Inner::Erode => Mix::Erode,
-                Inner::Auto => Mix::Auto,
-                _ => Mix::Linear,
+                Inner::Auto | Inner::Mean | Inner::Merge => Mix::Auto,
             },
             weighting: plan.weighting,
             sharp: plan.sharp,
-        };
+        }
+    }
+
+    /// The morphing function of each feature, or of the whole where there are none.
+    fn inners(&self) -> Vec<Inner> {
+        let plan = &self.plan;
+        match plan.features.as_slice() {
+            [] => vec![plan.inner],
+            all => all.iter().map(|f| f.inner.unwrap_or(plan.inner)).collect(),
+        }
+    }
+}
+
+impl Morph for Metamorphosis {
+    fn at(&self, t: f64, job: &dyn Job) -> Result<Shared, Cancelled> {
+        let plan = &self.plan;
+        let mut h = self.unmeasured(t);
         let domain = self.domain();
-        match plan.inner {
-            Inner::Linear => {}
-            Inner::SpaceTime => {
-                h.mix = Mix::SpaceTime(measure::bounded(&h, &plan.space_time, &domain, job)?);
+        if plan.inner == Inner::SpaceTime {
+            h.mix = Mix::SpaceTime(measure::bounded(&h, &plan.space_time, &domain, job)?);
+        } else if !matches!(h.mix, Mix::Linear) {
+            let all = measure::locals(&h, &self.inners(), &domain, job)?;
+            if h.features.is_empty() {
+                for m in &all {
+                    (h.local, h.thin) = (m.local, m.thin.clone());
+                }
             }
-            Inner::Grow | Inner::Erode | Inner::Auto => {
-                let locals = measure::locals(&h, &domain, job)?;
-                if h.features.is_empty() {
-                    h.local = locals[0];
-                }
-                for (f, l) in h.features.iter_mut().zip(locals) {
-                    f.local = l;
-                }
+            for (f, m) in h.features.iter_mut().zip(all) {
+                (f.local, f.thin) = (m.local, m.thin);
             }
         }
         Ok(Arc::new(h))

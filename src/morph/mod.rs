@@ -15,6 +15,7 @@ mod moving;
 mod plan;
 mod space_time;
 mod transport;
+mod tune;
 mod warp_field;
 mod whole;
 
@@ -22,6 +23,7 @@ pub use moving::Moment;
 pub use plan::{
     Anchor, Blend, Course, Feature, Form, Frames, Inner, MorphError, Part, Plan, Scheme, SpaceTime,
 };
+pub use tune::{Choice, Outlook, Style, Tuning, tune};
 
 use crate::field::Shared;
 use crate::job::{Cancelled, Job};

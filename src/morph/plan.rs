@@ -30,6 +30,8 @@ pub struct Feature {
     /// Offset d of paper 001, eq. 6, mm; positive thickens. Of a pair it is reached half way, see
     /// [`Feature::offset_at`].
     pub offset: f64,
+    /// Morphing function of this feature; by default the plan's. See [`Inner::by_feature`].
+    pub inner: Option<Inner>,
 }
 
 impl Feature {
@@ -93,6 +95,17 @@ pub enum Inner {
     Erode,
     /// Feature by feature: linear with an offset where the shapes overlap, grow where not.
     Auto,
+    /// The weighted mean of the fields, raised in each feature so that the mean volume is kept.
+    Mean,
+    /// As grow, with the members thinned in each feature so that the mean volume is kept.
+    Merge,
+}
+
+impl Inner {
+    /// Whether one feature may have this function while others have another such one.
+    pub fn by_feature(self) -> bool {
+        !matches!(self, Self::SpaceTime | Self::Erode)
+    }
 }
 
 /// Which frames the features of the result have.
@@ -250,6 +263,12 @@ pub enum MorphError {
         /// Shapes of the morph.
         shapes: usize,
     },
+    /// A function of a feature that cannot stand beside others.
+    #[error(
+        "feature `{0}`: space-time and erode are for the whole morph; a feature of its own takes \
+         linear, grow, auto, mean or merge, in a morph of one of these"
+    )]
+    Inner(String),
     /// An anchor is missing or there is one too many.
     #[error("anchor `{anchor}` has {got} points for {shapes} shapes")]
     Anchors {

@@ -40,7 +40,7 @@ fn block(centre: [f64; 3], half: [f64; 3], turn: f64) -> Element {
 }
 
 /// Three tables of one top and one leg, with an element on each part.
-fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
+pub(super) fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
     struct Table(Shared, Shared);
     impl Field for Table {
         fn value(&self, p: DVec3) -> f64 {
@@ -74,6 +74,7 @@ fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
         morph: course([1.0, 2.0, 0.5]),
         deform: course([1.0, 1.0, 1.0]),
         offset: 2.0,
+        inner: None,
     };
     Plan {
         scheme: Scheme::Blend,
@@ -92,8 +93,15 @@ fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
     }
 }
 
-const INNERS: [Inner; 5] =
-    [Inner::Linear, Inner::SpaceTime, Inner::Grow, Inner::Erode, Inner::Auto];
+const INNERS: [Inner; 7] = [
+    Inner::Linear,
+    Inner::SpaceTime,
+    Inner::Grow,
+    Inner::Erode,
+    Inner::Auto,
+    Inner::Mean,
+    Inner::Merge,
+];
 
 /// Every method on two and on three shapes, with and without features.
 fn morphs() -> Vec<(String, Plan)> {

@@ -1,5 +1,6 @@
 //! Entries of `[[features]]`: elements on the shapes that correspond to each other.
 
+use super::method::InnerEntry;
 use super::primitive::{self, is_default};
 use super::shapes::ShapeEntry;
 use super::source::join;
@@ -48,6 +49,21 @@ pub struct FeatureMorph {
     /// Thickens the feature (thins it when negative), mm; paper 001, eq. 6.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub offset: Option<f64>,
+    /// Morphing function of this feature: linear, grow, auto, mean or merge; by default the morph's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inner: Option<InnerEntry>,
+}
+
+impl FeatureMorph {
+    /// This where it says something, else `base`.
+    pub fn over(&self, base: &Self) -> Self {
+        Self {
+            t: self.t.clone().or_else(|| base.t.clone()),
+            deform: self.deform.clone().or_else(|| base.deform.clone()),
+            offset: self.offset.or(base.offset),
+            inner: self.inner.or(base.inner),
+        }
+    }
 }
 
 /// An element: exactly one shape, perhaps twisted, tapered or bent along its axis.

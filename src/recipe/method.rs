@@ -1,5 +1,6 @@
 //! `[morph]` and `[[hybrids]]`: which method, between what, with which weights.
 
+use super::features::FeatureMorph;
 use super::primitive::{finite, is_default, positive};
 use super::source::join;
 use super::time::Times;
@@ -28,6 +29,9 @@ pub struct MorphEntry {
     /// The shapes of a group.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub among: Option<Vec<String>>,
+    /// What hybrids of the method `auto` are to look like; by default `average`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub style: Option<StyleEntry>,
     /// What the features' weights blend; by default `maps`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blend: Option<BlendEntry>,
@@ -52,6 +56,9 @@ pub struct MorphEntry {
     /// Weights of the frames, as `weights`; by default the mean of the features' weights.
     #[serde(default, skip_serializing_if = "is_default")]
     pub deform_weights: Weights,
+    /// How single features change, by their names: over what the features say themselves.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub parts: BTreeMap<String, FeatureMorph>,
     /// Parameters of space-time blending.
     #[serde(rename = "space-time", default, skip_serializing_if = "Option::is_none")]
     pub space_time: Option<SpaceTimeEntry>,
@@ -82,7 +89,8 @@ pub enum MethodEntry {
     /// The shapes are pulled onto common anchors, those of features or `[[anchors]]`, and averaged
     /// (Cohen-Or et al. 1998).
     Warp,
-    /// Graft or group where there are features, else space-time; one shape alone as it is.
+    /// Graft or group with parameters chosen by a search; features are suggested where the recipe has
+    /// none, and where no parts are found it is space-time. One shape alone as it is.
     #[default]
     Auto,
     /// Two surface files of kind pde: their curves are blended and the equation solved again.
@@ -114,6 +122,21 @@ impl MethodEntry {
     }
 }
 
+/// What hybrids of the method `auto` are to look like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum StyleEntry {
+    /// An in-between everywhere.
+    #[default]
+    Average,
+    /// Whole parts of one shape or the other; of a pair they change places one after another.
+    Swap,
+    /// The lesser shapes grow out of the dominant one.
+    Grow,
+    /// The lesser shapes shrink towards the dominant one.
+    Erode,
+}
+
 /// What the features' weights blend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -138,6 +161,10 @@ pub enum InnerEntry {
     Erode,
     /// Linear where the shapes overlap, grow where not.
     Auto,
+    /// The weighted mean of the fields, raised so that the mean volume is kept.
+    Mean,
+    /// As grow, with the members thinned so that the mean volume is kept.
+    Merge,
 }
 
 /// How distances to features become weights.
@@ -241,6 +268,7 @@ impl MorphEntry {
             method: self.method.or(base.method),
             between: of.between.clone(),
             among: of.among.clone(),
+            style: self.style.or(base.style),
             blend: self.blend.or(base.blend),
             inner: self.inner.or(base.inner),
             offset: self.offset.or(base.offset),
@@ -249,6 +277,7 @@ impl MorphEntry {
             t: self.t.clone().or_else(|| base.t.clone()),
             weights: rows(&self.weights, &base.weights),
             deform_weights: rows(&self.deform_weights, &base.deform_weights),
+            parts: over_parts(&self.parts, &base.parts),
             space_time: self.space_time.clone().or_else(|| base.space_time.clone()),
             transport: self.transport.clone().or_else(|| base.transport.clone()),
         }
@@ -279,6 +308,11 @@ impl MorphEntry {
         }
         rows(&self.weights, &format!("{at}.weights"), recipe)?;
         rows(&self.deform_weights, &format!("{at}.deform_weights"), recipe)?;
+        for (feature, part) in &self.parts {
+            let at = join(&format!("{at}.parts"), feature);
+            known_feature(feature, &[], &at, recipe)?;
+            finite(&[part.offset.unwrap_or(0.0)], &format!("{at}.offset"))?;
+        }
         if let Some(samples) = self.transport.as_ref().and_then(|t| t.samples)
             && !(16..=256).contains(&samples)
         {
@@ -313,14 +347,32 @@ fn known_shape(name: &str, at: &str, recipe: &Recipe) -> Result<(), Problem> {
     Err(Problem::new(at, format!("no shape is called `{name}`{hint}")))
 }
 
+fn known_feature(name: &str, also: &[&str], at: &str, recipe: &Recipe) -> Result<(), Problem> {
+    let names = || recipe.features.iter().map(|f| f.name.as_str()).chain(also.iter().copied());
+    if names().any(|n| n == name) {
+        return Ok(());
+    }
+    let hint = did_you_mean(name, names());
+    Err(Problem::new(at, format!("no feature is called `{name}`{hint}")))
+}
+
+/// The parts of both; what `mine` says of a part, key by key, goes first.
+fn over_parts(
+    mine: &BTreeMap<String, FeatureMorph>,
+    base: &BTreeMap<String, FeatureMorph>,
+) -> BTreeMap<String, FeatureMorph> {
+    let mut all = base.clone();
+    for (name, part) in mine {
+        let merged = all.get(name).map_or_else(|| part.clone(), |b| part.over(b));
+        all.insert(name.clone(), merged);
+    }
+    all
+}
+
 fn rows(rows: &Weights, at: &str, recipe: &Recipe) -> Result<(), Problem> {
     for (feature, row) in rows {
         let at = join(at, feature);
-        if feature != "default" && !recipe.features.iter().any(|f| f.name == *feature) {
-            let names = recipe.features.iter().map(|f| f.name.as_str()).chain(["default"]);
-            let hint = did_you_mean(feature, names);
-            return Err(Problem::new(at, format!("no feature is called `{feature}`{hint}")));
-        }
+        known_feature(feature, &["default"], &at, recipe)?;
         for (shape, &w) in row {
             let at = join(&at, shape);
             known_shape(shape, &at, recipe)?;

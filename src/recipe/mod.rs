@@ -22,7 +22,7 @@ pub use anchors::AnchorEntry;
 pub use features::{ElementEntry, ElementShape, FeatureEntry, FeatureMorph, MeshShape};
 pub use method::{
     BlendEntry, FormEntry, InnerEntry, MethodEntry, MorphEntry, OneOrMany, SpaceTimeEntry,
-    TransportEntry, WeightingEntry, WeightingKind, Weights,
+    StyleEntry, TransportEntry, WeightingEntry, WeightingKind, Weights,
 };
 pub use output::{GridEntry, MesherEntry, NameOrNames, OutputEntry};
 pub use primitive::{BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, Primitive, PrismShape};

@@ -2,7 +2,7 @@
 
 use super::AnimationReport;
 use crate::check::{Crumbs, Health};
-use crate::scene::{Input, LiveShape};
+use crate::scene::{Input, LiveShape, Search};
 use serde::Serialize;
 
 /// Seconds of each stage.
@@ -131,6 +131,8 @@ pub struct Report {
     pub peak_memory_mb: Option<f64>,
     /// What was assumed and found.
     pub notes: Vec<String>,
+    /// What was chosen for the hybrids whose method was `auto`.
+    pub searches: Vec<Search>,
     /// The frames.
     pub frames: Vec<FrameReport>,
     /// The files that play them.

@@ -1,12 +1,18 @@
 //! Shapes read and placed: enough to know how large the work will be.
 
+use super::auto::{self, Search};
+use super::live::LiveShape;
 use super::live::{self, Placed, Stop, Want};
 use super::variant::{Parts, Variant, asked};
 use super::{Scene, SceneError, mesh_element, plan, scheme};
+use crate::element::Element;
 use crate::grid::Lattice;
 use crate::job::{self, Job};
+use crate::morph::MorphError;
 use crate::num::Aabb;
-use crate::recipe::{GridEntry, MorphEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join};
+use crate::recipe::{
+    GridEntry, MethodEntry, MorphEntry, PlaceLike, PlainOr, Problem, Recipe, Source, join,
+};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +27,8 @@ pub struct Draft {
     uses: BTreeMap<String, Use>,
     /// Side of a cell, mm.
     step: f64,
+    /// What `auto` found on the shapes.
+    found: Vec<String>,
 }
 
 impl Draft {
@@ -37,6 +45,7 @@ impl Draft {
         job.stage("read");
         // names are looked up freely from here on
         recipe.validate().map_err(|p| source.locate(p))?;
+        let (recipe, found) = auto::with_features(recipe, &source, beside, job)?;
         let uses = uses(&recipe).map_err(|p| source.locate(p))?;
         let mut placed: Vec<Placed> = Vec::with_capacity(uses.len());
         // those that stand like another come after it
@@ -60,7 +69,7 @@ impl Draft {
         }
         placed.sort_by(|a, b| a.name.cmp(&b.name));
         let step = step(&recipe.grid, longest(&placed));
-        Ok(Self { recipe, source, beside: beside.to_owned(), placed, uses, step })
+        Ok(Self { recipe, source, beside: beside.to_owned(), placed, uses, step, found })
     }
 
     /// Side of a cell, mm.
@@ -129,12 +138,12 @@ impl Draft {
         job: &dyn Job,
     ) -> Result<(Scene, Vec<(String, SceneError)>), SceneError> {
         let (padding, step) = (self.padding(), self.step);
-        let Self { recipe, source, beside, placed, uses, .. } = self;
+        let Self { mut recipe, source, beside, placed, uses, found, .. } = self;
         let locate = |p: Problem| SceneError::Bad(source.locate(p));
         let box_ = hull(&placed);
         fits(&Lattice::covering(&box_.grow(padding), step)).map_err(locate)?;
         let meshes = mesh_element::read_all(&recipe.features, &beside, job).map_err(locate)?;
-        let (mut notes, mut inputs, mut shapes) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut notes, mut inputs, mut shapes) = (found, Vec::new(), Vec::new());
         for shape in placed {
             job.stage(&format!("shape {}", shape.name));
             notes.extend_from_slice(&shape.notes);
@@ -148,6 +157,10 @@ impl Draft {
             notes.extend(found);
             shapes.push(shape);
         }
+        let searches = self::searches(&mut recipe, &shapes, &meshes, job).map_err(|e| match e {
+            Stop::Problem(p) => locate(p),
+            Stop::Cancelled(c) => c.into(),
+        })?;
         let parts =
             Parts { recipe: &recipe, beside: &beside, shapes: &shapes, meshes: &meshes, step };
         let (mut variants, mut refused) = (Vec::new(), Vec::new());
@@ -162,8 +175,46 @@ impl Draft {
         let domain = variants.iter().map(Variant::domain).reduce(Aabb::hull).unwrap_or(box_);
         let lattice = Lattice::covering(&domain.grow(padding), step);
         fits(&lattice).map_err(locate)?;
-        Ok((Scene { name: recipe.name, shapes, variants, lattice, notes, inputs }, refused))
+        let name = recipe.name.clone();
+        let scene = Scene { name, shapes, variants, lattice, notes, inputs, searches, recipe };
+        Ok((scene, refused))
     }
+}
+
+/// Carries `auto` out: each hybrid of that method that has features gets what a search chose.
+fn searches(
+    recipe: &mut Recipe,
+    shapes: &[LiveShape],
+    meshes: &BTreeMap<String, Element>,
+    job: &dyn Job,
+) -> Result<Vec<Search>, Stop> {
+    let mut all = Vec::new();
+    for (n, (at, entry)) in recipe.variants().into_iter().enumerate() {
+        let Ok(names) = plan::shape_names(&entry, recipe, &at) else { continue };
+        let live: Vec<&LiveShape> =
+            names.iter().filter_map(|n| shapes.iter().find(|s| s.name == *n)).collect();
+        let auto = entry.method.unwrap_or_default() == MethodEntry::Auto;
+        // what moves is another shape at every time; one choice would not fit
+        if !auto || recipe.features.is_empty() || live.len() < 2 || live.iter().any(|s| s.moves()) {
+            continue;
+        }
+        // what is wrong with an entry is told when its variant is made
+        let planned = plan::method(&entry, &names, recipe, &at)
+            .and_then(|method| plan::plan(&entry, method, &live, meshes, recipe, &at));
+        let Ok(plan) = planned else { continue };
+        let volumes: Vec<f64> = live.iter().map(|s| s.volume).collect();
+        let found = auto::searched(&entry, &plan, &volumes, job).map_err(|e| match e {
+            MorphError::Cancelled(c) => Stop::Cancelled(c),
+            e => Stop::Problem(Problem::new(at, e.to_string())),
+        });
+        let (chosen, search) = found?;
+        all.push(search);
+        match recipe.hybrids.get_mut(n) {
+            Some(hybrid) => *hybrid = chosen,
+            None => recipe.morph = chosen,
+        }
+    }
+    Ok(all)
 }
 
 /// What a shape is for.

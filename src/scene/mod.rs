@@ -4,6 +4,7 @@
 //! Two steps: a [`Draft`] has read the shapes and knows how large the work will be; a [`Scene`]
 //! has the fields and plans.
 
+mod auto;
 mod body;
 mod draft;
 mod elements;
@@ -24,6 +25,7 @@ mod variant;
 #[cfg(test)]
 mod tests;
 
+pub use auto::{Search, Seen};
 pub use draft::Draft;
 pub use live::LiveShape;
 pub use single::Single;
@@ -73,6 +75,10 @@ pub struct Scene {
     pub notes: Vec<String>,
     /// The files read.
     pub inputs: Vec<Input>,
+    /// What was chosen for the hybrids whose method was `auto`.
+    pub searches: Vec<Search>,
+    /// The recipe with `auto` carried out: features suggested, parameters chosen.
+    pub recipe: Recipe,
 }
 
 /// Names of the shapes that an entry morphs, in order, when its method can be had of this recipe;

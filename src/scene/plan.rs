@@ -206,11 +206,20 @@ fn inner(method: MethodEntry, asked: Option<InnerEntry>) -> Inner {
     match (method, asked) {
         (MethodEntry::Linear | MethodEntry::FeatureVolume, _) => Inner::Linear,
         (MethodEntry::SpaceTime, _) => Inner::SpaceTime,
-        (_, Some(InnerEntry::Linear)) => Inner::Linear,
-        (_, Some(InnerEntry::SpaceTime)) => Inner::SpaceTime,
-        (_, Some(InnerEntry::Grow) | None) => Inner::Grow,
-        (_, Some(InnerEntry::Erode)) => Inner::Erode,
-        (_, Some(InnerEntry::Auto)) => Inner::Auto,
+        (_, asked) => asked.map_or(Inner::Grow, function),
+    }
+}
+
+/// The morphing function of that name.
+pub(super) fn function(asked: InnerEntry) -> Inner {
+    match asked {
+        InnerEntry::Linear => Inner::Linear,
+        InnerEntry::SpaceTime => Inner::SpaceTime,
+        InnerEntry::Grow => Inner::Grow,
+        InnerEntry::Erode => Inner::Erode,
+        InnerEntry::Auto => Inner::Auto,
+        InnerEntry::Mean => Inner::Mean,
+        InnerEntry::Merge => Inner::Merge,
     }
 }
 

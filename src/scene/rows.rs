@@ -1,8 +1,9 @@
 //! Rows of weights -> the courses of features and wholes.
 
+use super::plan::function;
 use crate::element::Element;
 use crate::morph::{Course, Feature};
-use crate::recipe::{FeatureEntry, MorphEntry, Weights};
+use crate::recipe::{FeatureEntry, FeatureMorph, MorphEntry, Weights};
 use crate::weight::Ease;
 
 /// The rows of weights of an entry.
@@ -31,21 +32,28 @@ impl Rows<'_> {
     }
 
     pub fn feature(&self, f: &FeatureEntry, elements: Vec<Element>) -> Feature {
-        let own = f.morph.as_ref().and_then(|m| m.t.as_ref()).map(|t| t.0.clone());
+        let change = self.change(f);
+        let own = change.t.map(|t| t.0);
         let morph = match self.row(&self.entry.weights, &f.name) {
             Some(row) => Course::Fixed(row),
             None => paired(self.rest(), own),
         };
-        let own = f.morph.as_ref().and_then(|m| m.offset);
-        let offset = own.or(self.entry.offset).unwrap_or(0.0);
-        Feature { name: f.name.clone(), elements, deform: morph.clone(), morph, offset }
+        let offset = change.offset.or(self.entry.offset).unwrap_or(0.0);
+        let inner = change.inner.map(function);
+        Feature { name: f.name.clone(), elements, deform: morph.clone(), morph, offset, inner }
+    }
+
+    /// How a feature changes: as this entry says, else as the feature does.
+    fn change(&self, f: &FeatureEntry) -> FeatureMorph {
+        let own = f.morph.clone().unwrap_or_default();
+        self.entry.parts.get(&f.name).map_or(own.clone(), |part| part.over(&own))
     }
 
     /// Weights of the frames: own row, `default` row, own time function, else those all features
     /// share, so that the parts of a hybrid stay in proportion.
     pub fn deform(&self, f: &FeatureEntry, shared: Option<&Vec<f64>>) -> Course {
         let rows = &self.entry.deform_weights;
-        let own = f.morph.as_ref().and_then(|m| m.deform.as_ref()).map(|t| t.0.clone());
+        let own = self.change(f).deform.map(|t| t.0);
         if let Some(row) = self.row(rows, &f.name).or_else(|| self.row(rows, "default")) {
             return Course::Fixed(row);
         }

@@ -43,6 +43,7 @@ fn morph_makes_a_mesh_a_time_and_a_report() {
         "h-1.png",
         "h-1.stl",
         "h.run.json",
+        "h.toml",
         "low.obj",
         "tall.obj",
     ];

@@ -1,5 +1,7 @@
 /// Files that play the frames of a morph.
 mod animation;
+/// `morph` with its defaults: parts found, parameters searched.
+mod auto;
 /// `check` and its JSON.
 mod check;
 /// `compare`: methods, measures, the report.

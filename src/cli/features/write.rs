@@ -50,7 +50,7 @@ pub(super) fn recipe(
 }
 
 /// A path as the recipe has to name it: relative to the recipe's folder where that can be told.
-fn beside(recipe: &Path, file: &Path) -> PathBuf {
+pub fn beside(recipe: &Path, file: &Path) -> PathBuf {
     let folder = recipe.parent().unwrap_or(Path::new(""));
     let plain = |p: &Path| p.components().all(|c| matches!(c, Component::Normal(_)));
     if file.is_absolute() || folder.as_os_str().is_empty() {

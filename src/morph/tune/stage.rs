@@ -1,0 +1,266 @@
+//! A hybrid at one time on coarse samples, ready to be tried in many ways.
+
+use super::Outlook;
+use super::options::Kin;
+use crate::job::{self, Cancelled, Job};
+use crate::morph::Morph;
+use crate::morph::hybrid::{Hybrid, Looked};
+use crate::morph::inner::{Local, Mix};
+use crate::morph::measure::{self, Measured};
+use crate::morph::metamorphosis::Metamorphosis;
+use crate::morph::plan::{Inner, Plan};
+use crate::num::Aabb;
+use glam::{DVec3, UVec3};
+use rayon::prelude::*;
+
+/// The samples of one time.
+pub(super) struct Stage {
+    t: f64,
+    hybrid: Hybrid,
+    step: f64,
+    low: DVec3,
+    size: UVec3,
+    /// Where the shapes are near: index of the sample in the lattice.
+    at: Vec<u32>,
+    /// Values of the k shapes there, a row a point.
+    g: Vec<f64>,
+    /// Sharp weights of the n features there, a row a point.
+    sharp: Vec<f64>,
+    /// Values of the shapes in the cube of each feature.
+    rows: Vec<Vec<f64>>,
+    /// What is measured, by feature and option of its kind.
+    measured: Vec<Vec<(Vec<f64>, Measured)>>,
+    /// The mean volume, mm³, by option of each kind: that of the plan's weights.
+    mean: f64,
+}
+
+/// Values beyond which nothing reaches, mm: the largest level, and what shares thicken.
+const NEAR: f64 = 26.0;
+/// Samples this far outside, in cells, still connect: a member thinner than a cell falls between
+/// samples on its way.
+const SLACK: f64 = 0.3;
+/// A foot ends within this share of the height from the lowest point.
+const FOOT: f64 = 0.05;
+
+impl Stage {
+    /// Looks the shapes up, with this many cells along the longest side.
+    pub fn new(
+        morph: &Metamorphosis,
+        t: f64,
+        cells: f64,
+        job: &dyn Job,
+    ) -> Result<Self, Cancelled> {
+        let hybrid = morph.unmeasured(t);
+        let domain = morph.domain();
+        let step = domain.size().max_element() / cells;
+        let size = (domain.size() / step).ceil().as_uvec3().max(UVec3::ONE);
+        let (k, n) = (hybrid.shapes.len(), hybrid.features.len());
+        let slices: Vec<_> = (0..size.z)
+            .into_par_iter()
+            .map(|z| {
+                job::check(job)?;
+                let points: Vec<DVec3> = slice(&domain, step, size, z).collect();
+                let mut l = Looked::default();
+                hybrid.look_up(&points, &mut l);
+                let (mut at, mut g, mut sharp) = (Vec::new(), Vec::new(), Vec::new());
+                for r in 0..points.len() {
+                    let row = &l.g[r * k..(r + 1) * k];
+                    if row.iter().any(|&v| v < NEAR) {
+                        at.push(z * size.x * size.y + r as u32);
+                        g.extend_from_slice(row);
+                        sharp.extend_from_slice(&l.sharp[r * n..(r + 1) * n]);
+                    }
+                }
+                Ok((at, g, sharp))
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        let rows = measure::rows(&hybrid, job)?;
+        let (mut at, mut g, mut sharp) = (Vec::new(), Vec::new(), Vec::new());
+        for (a, b, c) in slices {
+            at.extend(a);
+            g.extend(b);
+            sharp.extend(c);
+        }
+        let (low, measured) = (domain.min, Vec::new());
+        Ok(Self { t, hybrid, step, low, size, at, g, sharp, rows, measured, mean: 0.0 })
+    }
+
+    /// How far apart the shapes are in these features: 0 overlap, 1 do not.
+    pub fn apart(&self, features: &[usize]) -> f64 {
+        let one = |&i: &usize| {
+            let f = self.hybrid.features.get(i)?;
+            let rows = self.rows.get(i)?;
+            Some(measure::measured(rows, &f.lam, &measure::sizes(f), Inner::Auto).local.apart)
+        };
+        let all: Vec<f64> = features.iter().filter_map(one).collect();
+        all.iter().sum::<f64>() / all.len().max(1) as f64
+    }
+
+    /// Measures every option of every kind.
+    pub fn measure(
+        &mut self,
+        kins: &[Kin],
+        plan: &Plan,
+        volumes: &[f64],
+        job: &dyn Job,
+    ) -> Result<(), Cancelled> {
+        let kin_of = |i: usize| kins.iter().find(|k| k.features.contains(&i));
+        let features = &self.hybrid.features;
+        self.measured = (0..features.len())
+            .into_par_iter()
+            .map(|i| {
+                job::check(job)?;
+                let (f, rows) = (&features[i], &self.rows[i]);
+                let options = kin_of(i).map_or(&[][..], |k| k.options.as_slice());
+                let each = options.iter().map(|o| {
+                    let lam = o.course.as_ref().map_or_else(|| f.lam.clone(), |c| c.at(self.t));
+                    let inner = o.inner.unwrap_or(plan.inner);
+                    let m = measure::measured(rows, &lam, &measure::sizes(f), inner);
+                    (lam, m)
+                });
+                Ok(each.collect())
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        let mean = |lam: &[f64]| lam.iter().zip(volumes).map(|(l, v)| l * v).sum::<f64>();
+        self.mean = mean(&plan.course.at(self.t));
+        Ok(())
+    }
+
+    /// What a combination of options looks like.
+    pub fn judge(&self, kins: &[Kin], candidate: &[usize]) -> Outlook {
+        let f = self.values(&self.setting(kins, candidate));
+        let slack = SLACK * self.step;
+        let solid: Vec<bool> = f.iter().map(|&v| v < slack).collect();
+        let label = self.label(&solid);
+        let part = |v: f64| (0.5 - v / self.step).clamp(0.0, 1.0);
+        let mut volumes = vec![0.0; label.iter().copied().max().unwrap_or(0) as usize + 1];
+        for (&l, &v) in label.iter().zip(&f) {
+            volumes[l as usize] += part(v);
+        }
+        let whole: f64 = volumes.iter().sum();
+        let largest = volumes.iter().skip(1).copied().fold(0.0, f64::max);
+        let main = (1..volumes.len()).max_by(|&a, &b| volumes[a].total_cmp(&volumes[b]));
+        Outlook {
+            t: self.t,
+            largest: if whole > 0.0 { largest / whole } else { 0.0 },
+            volume: if self.mean > 0.0 { whole * self.step.powi(3) / self.mean } else { 1.0 },
+            lame: self.lame(&label, main.unwrap_or(0) as u32),
+        }
+    }
+
+    /// Where and what the field of a combination is.
+    #[cfg(test)]
+    pub fn field(&self, kins: &[Kin], candidate: &[usize]) -> Vec<(DVec3, f64)> {
+        let values = self.values(&self.setting(kins, candidate));
+        (0..values.len()).map(|r| (self.point(r), values[r])).collect()
+    }
+
+    /// Weights and parameters of each feature.
+    fn setting(&self, kins: &[Kin], candidate: &[usize]) -> Vec<&(Vec<f64>, Measured)> {
+        let n = self.hybrid.features.len();
+        let mut option = vec![0; n];
+        for (kin, &o) in kins.iter().zip(candidate) {
+            kin.features.iter().for_each(|&i| option[i] = o);
+        }
+        (0..n).filter_map(|i| self.measured[i].get(option[i])).collect()
+    }
+
+    /// Where a kept sample lies.
+    fn point(&self, r: usize) -> DVec3 {
+        let (at, [sx, sy, _]) = (self.at[r], self.size.to_array());
+        let cell = UVec3::new(at % sx, at / sx % sy, at / (sx * sy));
+        self.low + (cell.as_dvec3() + 0.5) * self.step
+    }
+
+    /// The field of a setting, as the hybrid mixes it.
+    fn values(&self, set: &[&(Vec<f64>, Measured)]) -> Vec<f64> {
+        let (k, n) = (self.hybrid.shapes.len(), self.hybrid.features.len());
+        let (mut g, mut lam) = (vec![0.0; k], vec![0.0; k]);
+        let whole = matches!(self.hybrid.mix, Mix::Erode).then_some(Mix::Erode);
+        let mix = whole.unwrap_or(Mix::Auto);
+        let value = |r: usize| {
+            g.copy_from_slice(&self.g[r * k..(r + 1) * k]);
+            lam.fill(0.0);
+            let mut local = Local { reach: 0.0, depth: 0.0, apart: 0.0, level: 0.0 };
+            for (&w, (l, m)) in self.sharp[r * n..(r + 1) * n].iter().zip(set) {
+                local.reach += w * m.local.reach;
+                local.depth += w * m.local.depth;
+                local.apart += w * m.local.apart;
+                local.level += w * m.local.level;
+                for j in 0..k {
+                    lam[j] += w * l[j];
+                    g[j] += w * m.thin[j];
+                }
+            }
+            mix.value(&g, &lam, &local)
+        };
+        (0..self.at.len()).map(value).collect()
+    }
+
+    /// Pieces by faces: 0 is outside.
+    fn label(&self, solid: &[bool]) -> Vec<u32> {
+        let [sx, sy, sz] = self.size.to_array();
+        let mut place = vec![u32::MAX; (sx * sy * sz) as usize];
+        for (r, (&at, &s)) in self.at.iter().zip(solid).enumerate() {
+            if s {
+                place[at as usize] = r as u32;
+            }
+        }
+        let mut label = vec![0; solid.len()];
+        let (mut next, mut todo) = (0, Vec::new());
+        for start in 0..solid.len() {
+            if !solid[start] || label[start] != 0 {
+                continue;
+            }
+            next += 1;
+            label[start] = next;
+            todo.push(start);
+            while let Some(r) = todo.pop() {
+                let at = self.at[r];
+                let (x, y, z) = (at % sx, at / sx % sy, at / (sx * sy));
+                let sides = [
+                    (x > 0).then(|| at - 1),
+                    (x + 1 < sx).then(|| at + 1),
+                    (y > 0).then(|| at - sx),
+                    (y + 1 < sy).then(|| at + sx),
+                    (z > 0).then(|| at - sx * sy),
+                    (z + 1 < sz).then(|| at + sx * sy),
+                ];
+                for side in sides.into_iter().flatten() {
+                    let r = place[side as usize] as usize;
+                    if r < label.len() && label[r] == 0 {
+                        label[r] = next;
+                        todo.push(r);
+                    }
+                }
+            }
+        }
+        label
+    }
+
+    /// Features whose element stands on the floor although the main piece does not reach it there.
+    fn lame(&self, label: &[u32], main: u32) -> usize {
+        let held = |r: &usize| label[*r] == main && main > 0;
+        let held: Vec<DVec3> = (0..label.len()).filter(held).map(|r| self.point(r)).collect();
+        let bounds = Aabb::of(held.iter().copied());
+        if bounds.is_empty() {
+            return self.hybrid.features.len();
+        }
+        let reach = FOOT * bounds.size().z + self.step;
+        let boxes = self.hybrid.features.iter().map(|f| f.element.bounds());
+        let floor = boxes.clone().fold(f64::INFINITY, |z, b| z.min(b.min.z));
+        let feet = boxes.filter(|b| b.min.z < floor + reach);
+        let stands = |b: &Aabb| {
+            let b = b.grow(reach);
+            held.iter().any(|p| p.z < bounds.min.z + reach && b.contains(*p))
+        };
+        feet.filter(|b| !stands(b)).count()
+    }
+}
+
+/// Cell centres of a slice of the lattice over the domain.
+fn slice(domain: &Aabb, step: f64, size: UVec3, z: u32) -> impl Iterator<Item = DVec3> {
+    let low = domain.min;
+    (0..size.x * size.y)
+        .map(move |i| low + (UVec3::new(i % size.x, i / size.x, z).as_dvec3() + 0.5) * step)
+}

@@ -1,0 +1,91 @@
+//! `morph` with its defaults: parts found, parameters searched, the recipe written.
+
+use crate::util::Folder;
+use serde_json::Value;
+use std::fs;
+
+/// Two chairs that differ in every part: round legs and spindles, square legs and a panel.
+fn chairs() -> Folder {
+    let folder = Folder::new();
+    let windsor = r#"kind = "solid"
+[[parts]]
+box = { center = [0, 0, 435], size = [420, 400, 40] }
+[[parts]]
+cylinder = { from = [170, 165, 0], to = [150, 150, 430], radius = 18 }
+mirror = "xy"
+[[parts]]
+cylinder = { from = [160, 185, 430], to = [160, 205, 880], radius = 15 }
+mirror = "x"
+[[parts]]
+cylinder = { from = [60, 185, 430], to = [60, 205, 880], radius = 12 }
+mirror = "x"
+[[parts]]
+box = { center = [0, 205, 880], size = [360, 30, 60] }
+"#;
+    let panel = r#"kind = "solid"
+[[parts]]
+box = { center = [0, 0, 455], size = [460, 440, 50] }
+[[parts]]
+box = { center = [200, 190, 220], size = [46, 46, 440] }
+mirror = "xy"
+[[parts]]
+box = { center = [0, 205, 650], size = [420, 30, 380] }
+"#;
+    folder.put("windsor.toml", windsor);
+    folder.put("panel.toml", panel);
+    folder
+}
+
+fn json(folder: &Folder, file: &str) -> Value {
+    serde_json::from_str(&fs::read_to_string(folder.join(file)).unwrap()).unwrap()
+}
+
+#[test]
+fn two_chairs_become_one_chair_and_a_recipe_of_it() {
+    let folder = chairs();
+    let args = ["morph", "windsor.toml", "panel.toml", "--resolution", "64"];
+    let times = ["-t", "0.25:0.75:0.25", "-o", "h-{t}.stl"];
+    let ran = folder.run(&[&args[..], &times].concat()).ends(0);
+    let said = ran.stderr();
+    for word in ["found: ", "kept: ", "next: ", "legs", "h.toml"] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let report = json(&folder, "h.run.json");
+    assert_eq!(report["searches"][0]["style"], "average");
+    for f in report["frames"].as_array().unwrap() {
+        assert_eq!(f["pieces"], 1, "{f}");
+        let kept = f["volume_kept"].as_f64().unwrap();
+        assert!((0.8..1.3).contains(&kept), "{kept}");
+    }
+    for name in ["h-0.25.png", "h-0.5.png", "h-0.75.png", "h.toml"] {
+        assert!(folder.join(name).is_file(), "{name}");
+    }
+    folder.run(&["run", "h.toml", "-o", "again"]).ends(0);
+    for t in ["0.25", "0.5", "0.75"] {
+        let bytes = |name: String| fs::read(folder.join(&name)).unwrap();
+        assert_eq!(bytes(format!("h-{t}.stl")), bytes(format!("again/h-{t}.stl")));
+    }
+    folder.run(&[&args[..], &times].concat()).fails(2, &["--force"]);
+}
+
+#[test]
+fn styles_are_words_of_auto() {
+    let folder = chairs();
+    let args = ["morph", "windsor.toml", "panel.toml", "--resolution", "32", "-o", "x.stl"];
+    folder.run(&[&args[..], &["--style", "swop"]].concat()).fails(2, &["did you mean `swap`?"]);
+    let linear = ["--style", "swap", "--method", "linear"];
+    folder.run(&[&args[..], &linear].concat()).fails(2, &["--style"]);
+    folder.run(&[&args[..], &["--style", "swap"]].concat()).ends(0);
+    assert_eq!(json(&folder, "x.run.json")["searches"][0]["style"], "swap");
+}
+
+#[test]
+fn a_group_with_all_weight_on_one_chair_is_that_chair() {
+    let folder = chairs();
+    let args = ["morph", "windsor.toml", "panel.toml", "windsor.toml", "--resolution", "48"];
+    folder.run(&[&args[..], &["--weights", "0,1,0", "-o", "g.stl"]].concat()).ends(0);
+    let frame = json(&folder, "g.run.json")["frames"][0].clone();
+    assert_eq!(frame["pieces"], 1);
+    let kept = frame["volume_kept"].as_f64().unwrap();
+    assert!((kept - 1.0).abs() < 0.02, "{kept}");
+}
