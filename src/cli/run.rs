@@ -232,6 +232,12 @@ fn change_key(tree: &mut toml::Table, change: &str) -> Result<(), String> {
         at = here.as_table_mut().ok_or_else(|| format!("{path}: `{step}` is no table"))?;
     }
     at.insert((*last).to_owned(), value);
+    // the two ways of saying the same thing: the one just given counts
+    match path.trim() {
+        "grid.resolution" => drop(at.remove("voxel")),
+        "grid.voxel" => drop(at.remove("resolution")),
+        _ => {}
+    }
     Ok(())
 }
 

@@ -16,6 +16,9 @@ use fieldgraft::scene::{Draft, sha256};
 use std::path::Path;
 use std::time::Instant;
 
+/// Puts the recipe that was chosen in place, and returns its text.
+pub type Written<'a> = dyn Fn(&Recipe) -> Result<String, Failure> + 'a;
+
 /// A recipe ready to be made.
 pub struct Task<'a> {
     /// The recipe.
@@ -29,7 +32,7 @@ pub struct Task<'a> {
     /// The recipe's file, if it has one.
     pub file: Option<String>,
     /// Writes down the recipe that is carried out; by default its text is the source.
-    pub written: Option<&'a dyn Fn(&Recipe) -> Result<String, Failure>>,
+    pub written: Option<&'a Written<'a>>,
 }
 
 /// What was made.

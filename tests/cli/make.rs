@@ -98,6 +98,20 @@ fn the_same_bytes_on_any_number_of_threads_and_from_the_written_recipe() {
 }
 
 #[test]
+fn setting_the_resolution_replaces_the_voxel_and_back() {
+    let folder = folder();
+    let args = ["morph", "low.obj", "tall.obj", "--up", "z", "-o", "h.stl", "--dry-run"];
+    folder.run(&[&args[..], &["--voxel", "3", "--recipe", "r.toml"]].concat()).ends(0);
+    let voxel = |set: &str| {
+        let ran = folder.run(&["run", "r.toml", "--set", set, "--dry-run", "--json"]).ends(0);
+        serde_json::from_str::<Value>(&ran.stdout()).unwrap()["voxel_mm"].as_f64().unwrap()
+    };
+    let longest = 48.0 * voxel("grid.resolution=48");
+    assert!((24.0 * voxel("grid.resolution=24") - longest).abs() < 1e-9);
+    assert_eq!(voxel("grid.voxel=2.5"), 2.5);
+}
+
+#[test]
 fn a_dry_run_predicts_and_writes_nothing() {
     let folder = folder();
     let args = ["morph", "low.obj", "tall.obj", "--up", "z", "--resolution", "64", "-o", "h.stl"];

@@ -94,7 +94,7 @@ fn options(
         (Style::Average, _) if apart < TOO_FAR => vec![plain(Inner::Mean), merged(None)],
         (Style::Average, _) => vec![merged(None), plain(Inner::Mean)],
         (Style::Swap, Some(Course::Fixed(row))) => {
-            few(row, n).into_iter().filter(|c| alone(c)).map(|c| merged(Some(c))).collect()
+            few(row, n).into_iter().filter(alone).map(|c| merged(Some(c))).collect()
         }
         (Style::Swap, Some(Course::Pair(Ease::Power(p)))) if *p == 1.0 => {
             (0..count).map(|place| merged(Some(window(place, count)))).collect()

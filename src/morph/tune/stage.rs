@@ -121,8 +121,7 @@ impl Stage {
                 Ok(each.collect())
             })
             .collect::<Result<_, Cancelled>>()?;
-        let mean = |lam: &[f64]| lam.iter().zip(volumes).map(|(l, v)| l * v).sum::<f64>();
-        self.mean = mean(&plan.course.at(self.t));
+        self.mean = plan.course.at(self.t).iter().zip(volumes).map(|(l, v)| l * v).sum();
         Ok(())
     }
 
