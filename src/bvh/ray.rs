@@ -16,10 +16,11 @@ pub struct Exit {
 }
 
 impl Bvh {
-    /// The nearest triangle beyond `least` mm that the ray from `from` along the unit vector
-    /// `along` meets from behind. A ray that runs exactly through a side may find either triangle.
-    pub fn first_exit(&self, from: DVec3, along: DVec3, least: f64) -> Option<Exit> {
-        let (inverse, mut best) = (along.recip(), f64::INFINITY);
+    /// The nearest triangle between `least` and `most` mm away that the ray from `from` along the
+    /// unit vector `along` meets from behind. A ray that runs exactly through a side may find
+    /// either triangle.
+    pub fn first_exit(&self, from: DVec3, along: DVec3, [least, most]: [f64; 2]) -> Option<Exit> {
+        let (inverse, mut best) = (along.recip(), most);
         let mut found = None;
         let mut open = Vec::with_capacity(64);
         open.extend((!self.nodes.is_empty()).then_some(0u32));
@@ -114,12 +115,12 @@ mod tests {
             (DVec3::new(0.1, 0.2, 0.0), DVec3::new(0.0, 0.6, 0.8), None),
             (DVec3::new(0.1, 0.2, 2.2), DVec3::new(0.0, 0.6, 0.8), Some(1.0)),
         ] {
-            let found = b.first_exit(from, along, 1e-9).map(|e| e.distance);
+            let found = b.first_exit(from, along, [1e-9, f64::INFINITY]).map(|e| e.distance);
             match (found, want) {
                 (Some(d), Some(w)) => assert!((d - w).abs() < 1e-12, "{from} {along}: {d}"),
                 (found, want) => assert_eq!(found, want, "{from} {along}"),
             }
         }
-        assert!(Bvh::new(&[]).first_exit(DVec3::ZERO, DVec3::Z, 0.0).is_none());
+        assert!(Bvh::new(&[]).first_exit(DVec3::ZERO, DVec3::Z, [0.0, 1.0]).is_none());
     }
 }
