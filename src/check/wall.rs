@@ -34,8 +34,9 @@ const LEAST_SHARE: f64 = 0.66;
 /// Exact up to rounding for plane-parallel plates, and up to the mesh's own sagitta for rods, tubes
 /// and balls; where both normals are off by 10°, as on rough spots, a rod comes out 5% too thin. Flat
 /// faces are measured every 64th of the box's diagonal: a spot that is thin over less than that
-/// may be missed on large triangles. On a mesh sampled with a step `h`, walls below `2 h` are
-/// as rough as the samples.
+/// may be missed on large triangles. On a mesh sampled with a step `h` a
+/// sharp edge is bevelled, and the wall between two bevels is up to 2.5 `h` thinner than that
+/// between the faces; walls below `2 h` are as rough as the samples.
 ///
 /// # Errors
 /// Cancelled.
