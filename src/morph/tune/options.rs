@@ -91,8 +91,9 @@ fn options(
             }
             all
         }
-        (Style::Average, _) if apart < TOO_FAR => vec![plain(Inner::Mean), merged(None)],
-        (Style::Average, _) => vec![merged(None), plain(Inner::Mean)],
+        // the mean loses thin legs and backs of another make, which coarse samples do not tell; merged
+        // parts keep them (chair2 x thonet: 2 pieces without arms against one with them)
+        (Style::Average, _) => vec![merged(None)],
         (Style::Swap, Some(Course::Fixed(row))) => {
             few(row, n).into_iter().filter(alone).map(|c| merged(Some(c))).collect()
         }
