@@ -61,8 +61,9 @@ fn meets(b: &Aabb, from: DVec3, inverse: DVec3, best: f64) -> bool {
         enter = enter.max(a.min(b));
         leave = leave.min(a.max(b));
     }
-    // as much as the products may be rounded
-    enter <= leave + 1e-12 * enter.abs()
+    // as much as the products may be rounded; a ray beside a slab that it runs along enters at
+    // infinity
+    enter.is_finite() && enter * (1.0 - 1e-12) <= leave
 }
 
 /// Distance to a triangle met from behind, sides included, and its normal (Möller and Trumbore

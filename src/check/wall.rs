@@ -7,8 +7,9 @@
 //! `2 d tan(a/2) / tan(a) = d (1 - tan²(a/2))`.
 //!
 //! *Opposite* means that the sides lean by less than 60°: the faces of a box edge bound a ball of
-//! any size, but no wall. A triangle counts with the middle one of its corners' values, so that a
-//! single rough spot is no wall.
+//! any size, but no wall. A triangle counts with the middle one of its corners' values, and the
+//! thinnest wall is one that [`PATCH`] average triangles' area is not above: the tip of a spike and
+//! a rough spot are no walls.
 
 use super::distance::Shell;
 use crate::job::{self, Cancelled, Job};
@@ -22,6 +23,12 @@ const OPPOSITE: f64 = 0.5;
 const FINEST: f64 = 1.0 / 64.0;
 /// Most points of a divided mesh.
 const MOST: usize = 2_000_000;
+/// A wall has as much area as so many average triangles. Fewer would take the tip of a feature that
+/// ends between two samples for a wall; more would miss a neck as wide and long as two cells.
+const PATCH: f64 = 16.0;
+/// Corners whose normals are within this cosine of a large triangle's own (35°) share a smooth
+/// surface with it; others stand at an edge.
+const SMOOTH: f64 = 0.82;
 /// The first rays go from every so many triangles: they find a wall that the thinnest is not above.
 const FIRST: usize = 16;
 /// A wall is no thinner than this share of the way along the normal: where the sides lean by 60°,
@@ -43,17 +50,15 @@ const LEAST_SHARE: f64 = 0.66;
 pub fn thinnest_wall(shell: &Shell, job: &dyn Job) -> Result<Option<f64>, Cancelled> {
     let points = Points::of(shell.mesh());
     let least = 1e-9 * shell.bvh().bounds().size().max_element();
-    let first: Vec<[u32; 3]> = points.triangles.iter().copied().step_by(FIRST).collect();
-    let mut walls: Vec<Option<f64>> = first
-        .par_iter()
-        .flatten_iter()
-        .map(|&v| points.wall(shell, v, [least, f64::INFINITY]))
-        .collect();
-    let wall = |v: Option<f64>| v.unwrap_or(f64::INFINITY);
-    let known = walls.chunks_exact(3).map(|w| middle([w[0], w[1], w[2]].map(wall)));
-    let limit = known.fold(f64::INFINITY, f64::min) / LEAST_SHARE;
+    // what some of the surface is not above, all of it is not above
+    let some: Vec<u32> = (0..points.triangles.len() as u32).step_by(FIRST).collect();
+    let endless = [least, f64::INFINITY];
+    let first: Vec<[f64; 2]> =
+        some.par_iter().map(|&t| points.patch(t, |v| points.wall(shell, v, endless))).collect();
+    let patch = PATCH * points.area() / points.triangles.len().max(1) as f64;
+    let limit = thinnest(first, patch).unwrap_or(f64::INFINITY) / LEAST_SHARE;
     job::check(job)?;
-    walls = (0..points.at.len() as u32)
+    let walls: Vec<f64> = (0..points.at.len() as u32)
         .into_par_iter()
         .with_min_len(512)
         .map(|v| {
@@ -63,8 +68,24 @@ pub fn thinnest_wall(shell: &Shell, job: &dyn Job) -> Result<Option<f64>, Cancel
             Ok(points.wall(shell, v, [least, limit]))
         })
         .collect::<Result<_, Cancelled>>()?;
-    let thinnest = points.triangles.iter().map(|t| middle(t.map(|v| wall(walls[v as usize]))));
-    Ok(thinnest.reduce(f64::min).filter(|w| w.is_finite()))
+    let all = (0..points.triangles.len() as u32).map(|t| points.patch(t, |v| walls[v as usize]));
+    Ok(thinnest(all.collect(), patch))
+}
+
+/// The least thickness that triangles of `patch` mm² are not above, from the thickness and area of
+/// each; `None` when all have less.
+fn thinnest(mut walls: Vec<[f64; 2]>, patch: f64) -> Option<f64> {
+    walls.retain(|[wall, _]| wall.is_finite());
+    walls.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut area = 0.0;
+    for [wall, own] in &walls {
+        area += own;
+        // rounding must not ask for one triangle more
+        if area >= patch * (1.0 - 1e-9) {
+            return Some(*wall);
+        }
+    }
+    None
 }
 
 /// The middle one of three.
@@ -108,17 +129,19 @@ impl Points {
             if small {
                 all.triangles.push(*f);
             } else if all.at.len() < MOST {
-                all.divide([a, b, c], parts.min(1000.0) as u32);
+                all.divide([a, b, c], f.map(|v| normals[v as usize]), parts.min(1000.0) as u32);
             }
         }
         all
     }
 
     /// Points in rows over a triangle, moved a little inwards from its sides.
-    fn divide(&mut self, [a, b, c]: [DVec3; 3], parts: u32) {
+    fn divide(&mut self, [a, b, c]: [DVec3; 3], corners: [DVec3; 3], parts: u32) {
         let Some(normal) = (b - a).cross(c - a).try_normalize() else {
             return;
         };
+        let round = corners.iter().all(|n| n.dot(normal) > SMOOTH);
+        let [na, nb, nc] = if round { corners } else { [normal; 3] };
         let first = self.at.len() as u32;
         let row = |i: u32| first + i * (2 * parts + 3 - i) / 2;
         let middle = (a + b + c) / 3.0;
@@ -126,6 +149,7 @@ impl Points {
             for j in 0..=parts - i {
                 let [u, v] = [i, j].map(|n| f64::from(n) / f64::from(parts));
                 let at = a + (c - a) * u + (b - a) * v;
+                let normal = (na + (nc - na) * u + (nb - na) * v).normalize_or(normal);
                 self.at.push(Point { at: at.lerp(middle, 1e-3), normal });
             }
         }
@@ -140,16 +164,30 @@ impl Points {
         }
     }
 
-    /// Thickness at a point.
-    fn wall(&self, shell: &Shell, v: u32, range: [f64; 2]) -> Option<f64> {
+    /// Thickness at a point; infinite where there is no opposite side within the range.
+    fn wall(&self, shell: &Shell, v: u32, range: [f64; 2]) -> f64 {
         let p = &self.at[v as usize];
-        let exit = shell.bvh().first_exit(p.at, -p.normal, range)?;
+        let Some(exit) = shell.bvh().first_exit(p.at, -p.normal, range) else {
+            return f64::INFINITY;
+        };
         // a smooth normal leans near an edge, a small triangle's own on a rough spot
         let cos = [self.normals[exit.face as usize], exit.normal].map(|n| -n.dot(p.normal));
         let cos = cos[0].max(cos[1]);
         // tan² of half the angle
         let lean = ((1.0 - cos) / (1.0 + cos)).max(0.0);
-        (cos > OPPOSITE).then_some(exit.distance * (1.0 - lean))
+        if cos > OPPOSITE { exit.distance * (1.0 - lean) } else { f64::INFINITY }
+    }
+
+    /// The middle one of a triangle's corners' values, and its area.
+    fn patch(&self, t: u32, of: impl Fn(u32) -> f64) -> [f64; 2] {
+        let t = self.triangles[t as usize];
+        let [a, b, c] = t.map(|v| self.at[v as usize].at);
+        [middle(t.map(of)), 0.5 * (b - a).cross(c - a).length()]
+    }
+
+    /// Area of all triangles, mm².
+    fn area(&self) -> f64 {
+        (0..self.triangles.len() as u32).map(|t| self.patch(t, |_| 0.0)[1]).sum()
     }
 }
 

@@ -172,7 +172,7 @@ pub const COLUMNS: &[Column] = &[
     column!(
         min_wall_mm,
         "mm",
-        "Diameter of the smallest ball between the surface and the opposite side that the inward normal meets, sides that lean by 60° or more left out; the middle one of a triangle's corners counts. Exact for plates, rods and balls up to the mesh; rough below two voxels."
+        "Diameter of the smallest ball between the surface and the opposite side that the inward normal meets, sides that lean by 60° or more left out; the middle one of a triangle's corners counts, and 16 average triangles must be as thin. Exact for plates, rods and balls up to the mesh; rough below two voxels."
     ),
     column!(
         hausdorff_to_a_mm,
