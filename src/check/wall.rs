@@ -26,8 +26,8 @@ const MOST: usize = 2_000_000;
 /// A wall has as much area as so many average triangles. Fewer would take the tip of a feature that
 /// ends between two samples for a wall; more would miss a neck as wide and long as two cells.
 const PATCH: f64 = 16.0;
-/// Corners whose normals are within this cosine of a large triangle's own (35°) share a smooth
-/// surface with it; others stand at an edge.
+/// Corners whose triangles are all within this cosine of their normal (35°) lie on a smooth surface;
+/// others stand at an edge.
 const SMOOTH: f64 = 0.82;
 /// The first rays go from every so many triangles: they find a wall that the thinnest is not above.
 const FIRST: usize = 16;
@@ -113,6 +113,7 @@ impl Points {
     fn of(mesh: &TriMesh) -> Self {
         let longest = mesh.bounds().size().length() * FINEST;
         let normals = smooth(mesh);
+        let round = round(mesh, &normals);
         let at = mesh.points.iter().zip(&normals).map(|(&at, &normal)| Point { at, normal });
         let mut all = Self { at: at.collect(), triangles: Vec::new(), normals: Vec::new() };
         for (i, f) in mesh.faces.iter().enumerate() {
@@ -129,19 +130,21 @@ impl Points {
             if small {
                 all.triangles.push(*f);
             } else if all.at.len() < MOST {
-                all.divide([a, b, c], f.map(|v| normals[v as usize]), parts.min(1000.0) as u32);
+                let corners = f.map(|v| normals[v as usize]);
+                let round = f.iter().all(|&v| round[v as usize]);
+                all.divide([a, b, c], round.then_some(corners), parts.min(1000.0) as u32);
             }
         }
         all
     }
 
-    /// Points in rows over a triangle, moved a little inwards from its sides.
-    fn divide(&mut self, [a, b, c]: [DVec3; 3], corners: [DVec3; 3], parts: u32) {
+    /// Points in rows over a triangle, moved a little inwards from its sides; with the normals between
+    /// its corners', or else its own.
+    fn divide(&mut self, [a, b, c]: [DVec3; 3], corners: Option<[DVec3; 3]>, parts: u32) {
         let Some(normal) = (b - a).cross(c - a).try_normalize() else {
             return;
         };
-        let round = corners.iter().all(|n| n.dot(normal) > SMOOTH);
-        let [na, nb, nc] = if round { corners } else { [normal; 3] };
+        let [na, nb, nc] = corners.unwrap_or([normal; 3]);
         let first = self.at.len() as u32;
         let row = |i: u32| first + i * (2 * parts + 3 - i) / 2;
         let middle = (a + b + c) / 3.0;
@@ -205,4 +208,16 @@ fn smooth(mesh: &TriMesh) -> Vec<DVec3> {
     let plain = gather(&|i, _| mesh.area_vector(i));
     let wide = gather(&|_, f| f.iter().map(|&v| plain[v as usize]).sum());
     wide.iter().map(|n| n.normalize_or_zero()).collect()
+}
+
+/// Whether all triangles round a point lie about as its normal says.
+fn round(mesh: &TriMesh, normals: &[DVec3]) -> Vec<bool> {
+    let mut round = vec![true; mesh.points.len()];
+    for (i, f) in mesh.faces.iter().enumerate() {
+        let own = mesh.area_vector(i).normalize_or_zero();
+        for &v in f {
+            round[v as usize] &= own.dot(normals[v as usize]) > SMOOTH;
+        }
+    }
+    round
 }
