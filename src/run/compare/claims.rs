@@ -85,7 +85,12 @@ fn number(value: Option<f64>, decimals: usize) -> String {
 
 fn pieces(m: &Summary) -> String {
     let most = m.pieces_max.map_or_else(|| "no".to_owned(), |n| n.to_string());
-    format!("{most} pieces at most, in one piece at {} of {} times", m.whole, m.frames)
+    let Summary { whole, nearly_whole, frames, .. } = m;
+    let specks = match nearly_whole > whole {
+        true => format!(" ({nearly_whole} when specks under 0.5% of the volume do not count)"),
+        false => String::new(),
+    };
+    format!("{most} pieces at most, in one piece at {whole} of {frames} times{specks}")
 }
 
 fn missing(m: &Summary) -> String {
@@ -187,7 +192,7 @@ fn one_piece(said: &str, m: &Summary) -> Claim {
     );
     let verdict = match m.frames - m.whole {
         0 => Verdict::Agrees,
-        broken if broken * 3 <= m.frames => Verdict::Partly,
+        broken if broken * 3 <= m.frames || m.nearly_whole == m.frames => Verdict::Partly,
         _ => Verdict::Disagrees,
     };
     Claim { paper: said.to_owned(), numbers, verdict }
@@ -203,6 +208,7 @@ mod tests {
             frames: 9,
             made: 9,
             whole,
+            nearly_whole: whole,
             pieces_max: Some(if whole == 9 { 1 } else { 40 }),
             kept_min: Some(kept),
             kept_off: Some(1.0 - kept),
@@ -228,6 +234,8 @@ mod tests {
         assert_eq!(verdicts(vec![summary("graft", 9, 1.0)]), [Verdict::Agrees]);
         assert_eq!(verdicts(vec![summary("graft", 8, 1.0)]), [Verdict::Partly]);
         assert_eq!(verdicts(vec![summary("graft", 0, 1.0)]), [Verdict::Disagrees]);
+        let specks = Summary { nearly_whole: 9, ..summary("graft", 0, 1.0) };
+        assert_eq!(verdicts(vec![specks]), [Verdict::Partly]);
         assert!(verdicts(vec![summary("group", 9, 1.0)]).is_empty());
         assert!(verdicts(vec![Summary::refused("graft", "no features")]).is_empty());
     }
