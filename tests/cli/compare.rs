@@ -98,6 +98,25 @@ fn the_report_is_whole_and_asks_nobody() {
 }
 
 #[test]
+fn methods_can_be_played() {
+    let args = ["--methods", "linear,graft:erode", "--no-meshes", "--animation", "webp,glb"];
+    let (folder, _) = compared(PAIR, &args);
+    let all = json(&folder);
+    let played = all["animations"].as_array().unwrap();
+    assert_eq!(played.len(), 4);
+    for (one, name) in
+        played.iter().zip(["linear.webp", "linear.glb", "graft-erode.webp", "graft-erode.glb"])
+    {
+        assert_eq!((&one["frames"], &one["turns"]), (&3.into(), &4.into()));
+        let file = folder.join(&format!("out/animations/{name}"));
+        assert_eq!(fs::metadata(file).unwrap().len(), one["file_bytes"].as_u64().unwrap());
+    }
+    let again = folder.run(&["compare", "r.toml", "-o", "out", "--animation", "glb"]);
+    again.fails(2, &["exists already"]);
+    folder.run(&["compare", "r.toml", "--animation", "mp4"]).ends(2);
+}
+
+#[test]
 fn a_method_that_does_not_apply_leaves_a_row_and_the_rest_goes_on() {
     let start = PAIR.find("[[features]]").unwrap();
     let end = PAIR.find("[morph]").unwrap();
