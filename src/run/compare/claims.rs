@@ -145,6 +145,7 @@ fn better(said: &str, m: &Summary, others: &[&Summary]) -> Claim {
     for other in others {
         let counts = [
             (other.frames - other.whole, m.frames - m.whole),
+            (other.frames - other.nearly_whole, m.frames - m.nearly_whole),
             (other.frames - other.made, m.frames - m.made),
         ];
         let lengths = [(other.kept_off, m.kept_off), (other.unevenness, m.unevenness)];
@@ -159,20 +160,22 @@ fn better(said: &str, m: &Summary, others: &[&Summary]) -> Claim {
             }
         }
         parts.push(format!(
-            "{}: in one piece at {} of {}, volume off by {}%, unevenness {}",
+            "{}: in one piece at {} of {} ({} but for specks), volume off by {}%, unevenness {}",
             other.method,
             other.whole,
             other.frames,
+            other.nearly_whole,
             number(other.kept_off.map(|k| k * 100.0), 0),
             number(other.unevenness, 2)
         ));
     }
     let numbers = format!(
-        "{}: in one piece at {} of {} times{}, volume off by {}%, unevenness {}; {}. Better in {won} \
-         of {contests} counts that differ.",
+        "{}: in one piece at {} of {} times ({} but for specks){}, volume off by {}%, unevenness {}; {}. \
+         Better in {won} of {contests} counts that differ.",
         m.method,
         m.whole,
         m.frames,
+        m.nearly_whole,
         missing(m),
         number(m.kept_off.map(|k| k * 100.0), 0),
         number(m.unevenness, 2),
