@@ -44,9 +44,12 @@ pub(super) struct Measured {
     pub thin: Vec<f64>,
 }
 
+/// Half of the least thickness that a member is thinned to, cells: less falls between samples.
+const HALF_LEAST: f64 = 0.9;
+
 /// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes; `sizes` are the
-/// volumes of their elements over that of the result's.
-pub(super) fn measured(g: &[f64], lam: &[f64], sizes: &[f64], inner: Inner) -> Measured {
+/// volumes of their elements over that of the result's, `cell` the side of the result's cells, mm.
+pub(super) fn measured(g: &[f64], lam: &[f64], sizes: &[f64], inner: Inner, cell: f64) -> Measured {
     let (mut local, wanted) = local(g, lam, sizes);
     let mut thin = vec![0.0; lam.len()];
     match inner {
@@ -56,7 +59,7 @@ pub(super) fn measured(g: &[f64], lam: &[f64], sizes: &[f64], inner: Inner) -> M
         Inner::Merge => {
             local.apart = 1.0;
             local.reach /= WHOLE_FROM;
-            thin = thinning(g, lam, local.reach, wanted);
+            thin = thinning(g, lam, local.reach, wanted, HALF_LEAST * cell);
         }
         Inner::Auto => {}
     }
@@ -64,8 +67,9 @@ pub(super) fn measured(g: &[f64], lam: &[f64], sizes: &[f64], inner: Inner) -> M
 }
 
 /// How much each shape is thinned (thickened, where negative) so that the merged shapes fill `wanted`
-/// samples: shares of the half thickness of each, larger for those that weigh less.
-fn thinning(g: &[f64], lam: &[f64], reach: f64, wanted: f64) -> Vec<f64> {
+/// samples: shares of the half thickness of each, larger for those that weigh less. Of no half thickness
+/// less than `least` is left.
+fn thinning(g: &[f64], lam: &[f64], reach: f64, wanted: f64, least: f64) -> Vec<f64> {
     let k = lam.len();
     let (mut count, mut depth) = (vec![0u64; k], vec![0.0; k]);
     for row in g.chunks_exact(k) {
@@ -83,7 +87,8 @@ fn thinning(g: &[f64], lam: &[f64], reach: f64, wanted: f64) -> Vec<f64> {
     let thin = |share: f64| -> Vec<f64> {
         let by = |(h, l): (&f64, &f64)| {
             let by = (share * 2.0 * (1.0 - l)).clamp(-THICKEST, THINNEST);
-            (by * h).max(-LEVEL_CAP)
+            let most = if *h > 0.0 { h - least } else { 0.0 };
+            (by * h).min(most).max(-LEVEL_CAP)
         };
         half.iter().zip(lam).map(by).collect()
     };
@@ -167,16 +172,17 @@ pub(super) fn locals(
     h: &Hybrid,
     inners: &[Inner],
     domain: &Aabb,
+    cell: f64,
     job: &dyn Job,
 ) -> Result<Vec<Measured>, Cancelled> {
     if h.features.is_empty() {
         let looked = look(h, &lattice(domain), job)?;
         let inner = inners.first().copied().unwrap_or(Inner::Auto);
-        return Ok(vec![measured(&looked.g, &h.lam, &[], inner)]);
+        return Ok(vec![measured(&looked.g, &h.lam, &[], inner, cell)]);
     }
     let all = rows(h, job)?;
     let each = h.features.iter().zip(inners).zip(&all);
-    Ok(each.map(|((f, &inner), rows)| measured(rows, &f.lam, &sizes(f), inner)).collect())
+    Ok(each.map(|((f, &inner), rows)| measured(rows, &f.lam, &sizes(f), inner, cell)).collect())
 }
 
 /// Values of the shapes at the samples of each feature, a row a sample.

@@ -90,6 +90,8 @@ pub(super) fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
         sharp: Weighting::Smooth { epsilon: 1.0, power: 4.0 },
         frames: Frames::Average,
         space_time: SpaceTime::default(),
+        cell: 0.0,
+        feet: Vec::new(),
     }
 }
 

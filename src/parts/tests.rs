@@ -161,7 +161,7 @@ fn stretchers_are_told_by_side() {
 }
 
 #[test]
-fn columns_and_bundles() {
+fn columns_and_their_spokes() {
     let mut tulip = vec![board(), back(), rod([0.0, 0.0, 20.0], [0.0, 0.0, 421.0], 30.0)];
     tulip.push(rod([0.0, 0.0, 0.0], [0.0, 0.0, 25.0], 200.0));
     let tulip = solid(&tulip, 1.0, 0.0, [0.0; 3]);
@@ -170,8 +170,11 @@ fn columns_and_bundles() {
     assert_eq!(names(&look(&tulip)), ["seat", "back", "column", "foot"]);
     let four = solid(&chair(), 1.0, 0.0, [0.0; 3]);
     let s = suggest(&[("tulip", &tulip), ("four", &four)], &Quiet).unwrap();
-    assert_eq!(s.features.len(), 2 + 8);
-    assert!(s.features[2..].iter().all(|f| f.note == Note::Bundle));
+    assert_eq!(names(&s), ["seat", "back", "base"]);
+    assert_eq!(s.features[2].note, Note::Whole);
+    // the disc reaches 200 mm, the legs stand 195 and 175 mm off the middle
+    let half: Vec<DVec3> = s.features[2].elements.iter().map(|e| e.half).collect();
+    assert!((half[0].x - 200.0).abs() < STEP && (half[1].x - 210.0).abs() < 2.0 * STEP, "{half:?}");
     let star: Vec<Element> = (0..5)
         .map(|i| {
             let a = f64::from(i) * std::f64::consts::TAU / 5.0 + 0.3;

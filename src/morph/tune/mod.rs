@@ -51,7 +51,7 @@ pub struct Outlook {
     pub largest: f64,
     /// Volume over the weighted mean of the shapes' volumes.
     pub volume: f64,
-    /// Features that should reach the floor and do not.
+    /// Feet that should stand on the floor and do not.
     pub lame: usize,
 }
 
