@@ -33,7 +33,7 @@ pub struct Thickened {
 }
 
 /// Longest edge of a piece of a triangle, over the thickness: each is judged at its middle.
-const PIECE: f64 = 1.0;
+const PIECE: f64 = 1.5;
 /// Distance off a face at which inside and outside are told apart, over the thickness.
 const OFF: f64 = 0.02;
 /// A wall this much thinner than asked for is thin.
@@ -41,6 +41,8 @@ const THIN: f64 = 0.95;
 /// Least rate at which the opposite side comes nearer, going inwards: 1 straight towards it, 0 along a
 /// side.
 const OPPOSITE: f64 = 0.5;
+/// Walls whose middles differ by less than this share of the thickness are of one thickness.
+const EVEN: f64 = 0.1;
 /// Pieces looked at together.
 const RUN: usize = 256;
 
@@ -60,19 +62,36 @@ pub fn thickened(
         .par_chunks(RUN)
         .map(|run| {
             check(job)?;
-            Ok(middles(&*field, run, thickness))
+            let at: Vec<_> = run.iter().map(|p| p.at).collect();
+            Ok(middles(&*field, &at, thickness))
         })
         .collect::<Result<Vec<_>, Cancelled>>()?;
+    let found: Vec<Option<Wall>> = found.into_iter().flatten().collect();
     let (mut middle, mut changed) = (Vec::new(), Thickened::default());
-    for (m, depth) in found.into_iter().flatten() {
-        let share = if depth > 0.0 { &mut changed.walls } else { &mut changed.sheets };
-        *share += area(&m);
-        middle.push(m);
+    let (pieces, found) = (&pieces[..], &found[..]);
+    let mut from = 0;
+    for face in pieces.chunk_by(|a, b| a.face == b.face) {
+        let walls = &found[from..from + face.len()];
+        from += face.len();
+        for (p, wall) in face.iter().zip(walls) {
+            let Some(wall) = wall else { continue };
+            let share = if wall.depth > 0.0 { &mut changed.walls } else { &mut changed.sheets };
+            *share += area(&p.at);
+        }
+        let whole = mesh.faces[face[0].face as usize].map(|v| mesh.points[v as usize]);
+        match alike(walls, EVEN * thickness) {
+            // few large triangles are searched faster than many small ones
+            Some(by) => middle.push(whole.map(|p| p + by)),
+            None => {
+                let walls = face.iter().zip(walls).filter_map(|(p, w)| Some((p, w.as_ref()?)));
+                middle.extend(walls.map(|(p, w)| p.at.map(|q| q + w.by)));
+            }
+        }
     }
     if middle.is_empty() {
         return Ok((field, changed));
     }
-    let all: f64 = pieces.iter().map(area).sum();
+    let all: f64 = pieces.iter().map(|p| area(&p.at)).sum();
     (changed.sheets, changed.walls) = (changed.sheets / all, changed.walls / all);
     let floor = mesh.bounds().min.z;
     let walls = Walls { solid: field, middle: Bvh::new(&middle), half: 0.5 * thickness, floor };
@@ -83,38 +102,61 @@ fn area([a, b, c]: &[DVec3; 3]) -> f64 {
     0.5 * (b - a).cross(c - a).length()
 }
 
+/// A piece of a triangle.
+struct Piece {
+    face: u32,
+    at: [DVec3; 3],
+}
+
+/// A thin wall under a piece.
+struct Wall {
+    /// From the face to the wall's middle.
+    by: DVec3,
+    /// How thick it is, mm; nought for a sheet.
+    depth: f64,
+}
+
+/// The way to the middle, where all pieces of a face lie on walls of one thickness.
+fn alike(walls: &[Option<Wall>], within: f64) -> Option<DVec3> {
+    let first = walls.first()?.as_ref()?.by;
+    let near = |w: &Option<Wall>| w.as_ref().is_some_and(|w| w.by.distance(first) <= within);
+    walls.iter().all(near).then_some(first)
+}
+
 /// The triangles of a mesh, cut until no edge is longer than `most`.
-fn pieces(mesh: &TriMesh, most: f64) -> Vec<[DVec3; 3]> {
+fn pieces(mesh: &TriMesh, most: f64) -> Vec<Piece> {
     let mut out = Vec::new();
-    let mut open: Vec<[DVec3; 3]> =
-        mesh.faces.iter().map(|f| f.map(|v| mesh.points[v as usize])).collect();
-    open.reverse();
-    while let Some(t) = open.pop() {
-        let length = |i: usize| t[i].distance_squared(t[(i + 1) % 3]);
-        let longest = (0..3).fold(0, |l, i| if length(i) > length(l) { i } else { l });
-        if length(longest) <= most * most {
-            out.extend((area(&t) > 0.0).then_some(t));
-            continue;
+    for (face, f) in mesh.faces.iter().enumerate() {
+        let mut open = vec![f.map(|v| mesh.points[v as usize])];
+        while let Some(t) = open.pop() {
+            let length = |i: usize| t[i].distance_squared(t[(i + 1) % 3]);
+            let longest = (0..3).fold(0, |l, i| if length(i) > length(l) { i } else { l });
+            if length(longest) <= most * most {
+                if area(&t) > 0.0 {
+                    out.push(Piece { face: face as u32, at: t });
+                }
+                continue;
+            }
+            let [a, b, c] = [t[longest], t[(longest + 1) % 3], t[(longest + 2) % 3]];
+            let m = a.midpoint(b);
+            open.extend([[m, b, c], [a, m, c]]);
         }
-        let [a, b, c] = [t[longest], t[(longest + 1) % 3], t[(longest + 2) % 3]];
-        let m = a.midpoint(b);
-        open.extend([[m, b, c], [a, m, c]]);
     }
     out
 }
 
-/// A piece of a triangle, looked at from its middle.
+/// A piece, looked at from its middle.
 struct Spot {
-    piece: [DVec3; 3],
+    /// Its place in the run.
+    n: usize,
     at: DVec3,
     inward: DVec3,
 }
 
 impl Spot {
-    fn new(piece: &[DVec3; 3]) -> Self {
-        let [a, b, c] = *piece;
+    fn new((n, [a, b, c]): (usize, &[DVec3; 3])) -> Self {
         let outward = (b - a).cross(c - a).normalize_or_zero();
-        Self { piece: *piece, at: (a + b + c) / 3.0, inward: -outward }
+        Self { n, at: (a + b + c) / 3.0, inward: -outward }
     }
 
     fn turned(self) -> Self {
@@ -136,19 +178,19 @@ fn unsettled(field: &dyn Field, spots: Vec<Spot>, half: f64) -> Vec<Spot> {
     spots.into_iter().zip(f).filter(|(_, f)| *f > -THIN * half).map(|(s, _)| s).collect()
 }
 
-/// The middle sheets of those pieces that are thin, and how thick their walls are, mm.
-fn middles(field: &dyn Field, run: &[[DVec3; 3]], thickness: f64) -> Vec<([DVec3; 3], f64)> {
+/// The walls under those pieces of a run that have thin ones.
+fn middles(field: &dyn Field, run: &[[DVec3; 3]], thickness: f64) -> Vec<Option<Wall>> {
     let (half, off) = (0.5 * thickness, OFF * thickness);
     // most faces are turned outwards, and few walls are thin
-    let spots = unsettled(field, run.iter().map(Spot::new).collect(), half);
+    let spots = unsettled(field, run.iter().enumerate().map(Spot::new).collect(), half);
     let spots = unsettled(field, spots.into_iter().map(Spot::turned).collect(), half);
     let sides = [off, -off].map(|by| inwards(field, &spots, by));
-    let mut out = Vec::new();
+    let mut out: Vec<Option<Wall>> = run.iter().map(|_| None).collect();
     let mut walls = Vec::new();
     for (n, s) in spots.into_iter().enumerate() {
         let (inside, outside) = (sides[0][n], sides[1][n]);
         if inside.min(outside) > 0.0 {
-            out.push((s.piece, 0.0));
+            out[s.n] = Some(Wall { by: DVec3::ZERO, depth: 0.0 });
         } else if inside.max(outside) > -0.5 * off {
             walls.push(if inside <= outside { s } else { s.turned() });
         }
@@ -157,7 +199,7 @@ fn middles(field: &dyn Field, run: &[[DVec3; 3]], thickness: f64) -> Vec<([DVec3
     for ((s, f), next) in walls.into_iter().zip(here).zip(next) {
         let depth = (half - f).clamp(off, thickness);
         if next - f > OPPOSITE * off && depth < THIN * thickness {
-            out.push((s.piece.map(|p| p + 0.5 * depth * s.inward), depth));
+            out[s.n] = Some(Wall { by: 0.5 * depth * s.inward, depth });
         }
     }
     out

@@ -131,7 +131,7 @@ impl Metamorphosis {
                 Inner::Linear | Inner::SpaceTime => Mix::Linear,
                 Inner::Grow => Mix::Grow,
                 Inner::Erode => Mix::Erode,
-                Inner::Auto | Inner::Mean | Inner::Merge => Mix::Auto,
+                Inner::Auto | Inner::Mean | Inner::Merge | Inner::Union => Mix::Auto,
             },
             weighting: plan.weighting,
             sharp: plan.sharp,

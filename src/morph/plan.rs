@@ -108,6 +108,8 @@ pub enum Inner {
     Mean,
     /// As grow, with the members thinned in each feature so that the mean volume is kept.
     Merge,
+    /// As merge, with nothing thinned.
+    Union,
 }
 
 impl Inner {
@@ -282,7 +284,7 @@ pub enum MorphError {
     /// A function of a feature that cannot stand beside others.
     #[error(
         "feature `{0}`: space-time and erode are for the whole morph; a feature of its own takes \
-         linear, grow, auto, mean or merge, in a morph of one of these"
+         linear, grow, auto, mean, merge or union, in a morph of one of these"
     )]
     Inner(String),
     /// An anchor is missing or there is one too many.

@@ -120,7 +120,9 @@ fn shared(
 /// do not cross, or legs and a column, have nothing in common but that they carry a seat.
 fn alike(chairs: &[&Chair]) -> bool {
     let kind = |c: &Chair| std::mem::discriminant(&c.base);
-    chairs.iter().all(|c| kind(c) == kind(chairs[0]))
+    let crossed = |c: &Chair| matches!(c.base, Base::Crossed(_));
+    // where they cross, and how far they lean, differs too much
+    chairs.len() == 1 || chairs.iter().all(|c| kind(c) == kind(chairs[0]) && !crossed(c))
 }
 
 /// Elements of a part of columns.

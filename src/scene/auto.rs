@@ -220,5 +220,6 @@ fn name_of(inner: Inner) -> InnerEntry {
         Inner::Auto => InnerEntry::Auto,
         Inner::Mean => InnerEntry::Mean,
         Inner::Merge => InnerEntry::Merge,
+        Inner::Union => InnerEntry::Union,
     }
 }

@@ -222,6 +222,7 @@ pub(super) fn function(asked: InnerEntry) -> Inner {
         InnerEntry::Auto => Inner::Auto,
         InnerEntry::Mean => Inner::Mean,
         InnerEntry::Merge => Inner::Merge,
+        InnerEntry::Union => Inner::Union,
     }
 }
 

@@ -4,9 +4,9 @@ use super::Outlook;
 use super::options::Kin;
 use crate::job::{self, Cancelled, Job};
 use crate::morph::Morph;
-use crate::morph::hybrid::{Hybrid, Looked};
+use crate::morph::hybrid::{Hybrid, Looked, Placed};
 use crate::morph::inner::{Local, Mix};
-use crate::morph::measure::{self, Measured};
+use crate::morph::measure::{self, Measured, Site};
 use crate::morph::metamorphosis::{Metamorphosis, Step, leads};
 use crate::morph::plan::{Inner, Plan};
 use crate::num::Aabb;
@@ -42,7 +42,7 @@ pub(super) struct Stage {
 const NEAR: f64 = 26.0;
 /// Samples this far outside, in cells, still connect: a member thinner than a cell falls between
 /// samples on its way.
-const SLACK: f64 = 0.3;
+const SLACK: f64 = 0.15;
 /// A foot ends within this share of the height from the lowest point, and as near to where it should.
 const FOOT: f64 = 0.03;
 
@@ -91,13 +91,20 @@ impl Stage {
         Ok(Self { t, hybrid, step, low, size, at, g, sharp, rows, measured, mean, feet, cell })
     }
 
+    /// The samples of a feature.
+    fn site<'a>(&self, f: &Placed, g: &'a [f64], sizes: &'a [f64]) -> Site<'a> {
+        Site { g, sizes, step: Some(measure::step(f)), cell: self.cell }
+    }
+
     /// How far apart the shapes are in these features: 0 overlap, 1 do not.
     pub fn apart(&self, features: &[usize]) -> f64 {
         let one = |&i: &usize| {
-            let f = self.hybrid.features.get(i)?;
-            let rows = self.rows.get(i)?;
-            let sizes = measure::sizes(f);
-            Some(measure::measured(rows, &f.lam, &sizes, Inner::Auto, self.cell).local.apart)
+            let (f, g) = (self.hybrid.features.get(i)?, self.rows.get(i)?);
+            Some(
+                measure::measured(&self.site(f, g, &measure::sizes(f)), &f.lam, Inner::Auto)
+                    .local
+                    .apart,
+            )
         };
         let all: Vec<f64> = features.iter().filter_map(one).collect();
         all.iter().sum::<f64>() / all.len().max(1) as f64
@@ -118,11 +125,13 @@ impl Stage {
             .map(|i| {
                 job::check(job)?;
                 let (f, rows) = (&features[i], &self.rows[i]);
+                let sizes = measure::sizes(f);
+                let site = self.site(f, rows, &sizes);
                 let options = kin_of(i).map_or(&[][..], |k| k.options.as_slice());
                 let each = options.iter().map(|o| {
                     let lam = o.course.as_ref().map_or_else(|| f.lam.clone(), |c| c.at(self.t));
                     let inner = o.inner.unwrap_or(plan.inner);
-                    let m = measure::measured(rows, &lam, &measure::sizes(f), inner, self.cell);
+                    let m = measure::measured(&site, &lam, inner);
                     (lam, m)
                 });
                 Ok(each.collect())
@@ -145,11 +154,13 @@ impl Stage {
             volumes[l as usize] += part(v);
         }
         let whole: f64 = volumes.iter().sum();
+        // the share of samples outside is the skin of all pieces
+        let pieces: f64 = volumes.iter().skip(1).sum();
         let largest = volumes.iter().skip(1).copied().fold(0.0, f64::max);
         let main = (1..volumes.len()).max_by(|&a, &b| volumes[a].total_cmp(&volumes[b]));
         Outlook {
             t: self.t,
-            largest: if whole > 0.0 { largest / whole } else { 0.0 },
+            largest: if pieces > 0.0 { largest / pieces } else { 0.0 },
             volume: if self.mean > 0.0 { whole * self.step.powi(3) / self.mean } else { 1.0 },
             lame: self.lame(&setting, &label, main.unwrap_or(0) as u32),
         }
