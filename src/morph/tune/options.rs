@@ -27,7 +27,7 @@ const TOO_FAR: f64 = 0.35;
 /// What each step from the preferred option costs.
 const STEP: f64 = 0.02;
 /// Most combinations that are tried.
-const MOST: usize = 64;
+const MOST: usize = 20;
 
 /// Words that tell features of one kind apart.
 const SIDES: [&str; 6] = ["left", "right", "front", "back", "rear", "middle"];
