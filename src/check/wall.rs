@@ -31,6 +31,9 @@ const PATCH: f64 = 16.0;
 const SMOOTH: f64 = 0.82;
 /// The first rays go from every so many triangles: they find a wall that the thinnest is not above.
 const FIRST: usize = 16;
+/// Seen from the other side a wall counts as the same one up to this much thicker: what a normal
+/// that leans by 20° hides of a rod.
+const SAME: f64 = 1.1;
 /// A wall is no thinner than this share of the way along the normal: where the sides lean by 60°,
 /// 1 - tan²(30°) = 2/3.
 const LEAST_SHARE: f64 = 0.66;
@@ -39,7 +42,7 @@ const LEAST_SHARE: f64 = 0.66;
 /// an opposite side. Meaningful for closed meshes. A ray a point: about as long as the check.
 ///
 /// Exact up to rounding for plane-parallel plates, and up to the mesh's own sagitta for rods, tubes
-/// and balls; where both normals are off by 10°, as on rough spots, a rod comes out 5% too thin. Flat
+/// and balls; where the normals of both sides are off by 10°, as on rough spots, a rod comes out 2% too thin. Flat
 /// faces are measured every 64th of the box's diagonal: a spot that is thin over less than that
 /// may be missed on large triangles. On a mesh sampled with a step `h` a
 /// sharp edge is bevelled, and the wall between two bevels is up to 2.5 `h` thinner than that
@@ -169,16 +172,29 @@ impl Points {
 
     /// Thickness at a point; infinite where there is no opposite side within the range.
     fn wall(&self, shell: &Shell, v: u32, range: [f64; 2]) -> f64 {
-        let p = &self.at[v as usize];
-        let Some(exit) = shell.bvh().first_exit(p.at, -p.normal, range) else {
+        let p = self.at[v as usize];
+        let Some((there, opposite)) = self.across(shell, p, range) else {
             return f64::INFINITY;
         };
+        // a normal that leans, as on a bevelled edge, sees a round wall too thin: the opposite side
+        // has its own view
+        match self.across(shell, opposite, range) {
+            Some((back, _)) if back < there * SAME => there.max(back),
+            _ => there,
+        }
+    }
+
+    /// Thickness as one point sees it, infinite where the other side leans too much, and where that is.
+    fn across(&self, shell: &Shell, p: Point, range: [f64; 2]) -> Option<(f64, Point)> {
+        let exit = shell.bvh().first_exit(p.at, -p.normal, range)?;
+        let smooth = self.normals[exit.face as usize];
         // a smooth normal leans near an edge, a small triangle's own on a rough spot
-        let cos = [self.normals[exit.face as usize], exit.normal].map(|n| -n.dot(p.normal));
+        let cos = [smooth, exit.normal].map(|n| -n.dot(p.normal));
         let cos = cos[0].max(cos[1]);
         // tan² of half the angle
         let lean = ((1.0 - cos) / (1.0 + cos)).max(0.0);
-        if cos > OPPOSITE { exit.distance * (1.0 - lean) } else { f64::INFINITY }
+        let wall = if cos > OPPOSITE { exit.distance * (1.0 - lean) } else { f64::INFINITY };
+        Some((wall, Point { at: p.at - p.normal * exit.distance, normal: smooth }))
     }
 
     /// The middle one of a triangle's corners' values, and its area.
