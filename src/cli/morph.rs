@@ -170,8 +170,8 @@ impl Morph {
 
     /// What was found, what was kept, what to try next.
     fn tell(&self, report: &Report, recipe: &Path, watch: &Watch) {
-        let found: Vec<&str> =
-            report.notes.iter().filter(|n| n.ends_with(')')).map(String::as_str).collect();
+        let told = |n: &&String| n.contains("(confidence ") || n.contains(" mm thick: ");
+        let found: Vec<&str> = report.notes.iter().filter(told).map(String::as_str).collect();
         if report.searches.is_empty() {
             watch.say("found: no parts to pair; the whole shapes were blended by space-time");
         } else {
