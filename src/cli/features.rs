@@ -11,6 +11,7 @@ use super::watch::Watch;
 use clap::{Args, Subcommand};
 use fieldgraft::job::Job;
 use fieldgraft::parts::{Guess, Suggestion};
+use fieldgraft::recipe::GridEntry;
 use fieldgraft::run;
 use fieldgraft::scene::suggest;
 use serde_json::{Value, json};
@@ -64,7 +65,8 @@ impl Suggest {
             }
         }
         let shapes = names(&self.inputs).into_iter().zip(self.reading.shapes(&self.inputs)?);
-        let looked = suggest::look(shapes.collect(), Path::new(""), watch)?;
+        let grid = GridEntry { resolution: Some(write::RESOLUTION), ..GridEntry::default() };
+        let looked = suggest::look(shapes.collect(), Path::new(""), &grid, watch)?;
         looked.notes.iter().for_each(|n| watch.say(n));
         if let Some(path) = &self.picture {
             watch.stage("picture");

@@ -170,8 +170,8 @@ impl Morph {
 
     /// What was found, what was kept, what to try next.
     fn tell(&self, report: &Report, recipe: &Path, watch: &Watch) {
-        let found: Vec<&str> =
-            report.notes.iter().filter(|n| n.ends_with(')')).map(String::as_str).collect();
+        let told = |n: &&String| n.contains("(confidence ") || n.contains(" mm thick: ");
+        let found: Vec<&str> = report.notes.iter().filter(told).map(String::as_str).collect();
         if report.searches.is_empty() {
             watch.say("found: no parts to pair; the whole shapes were blended by space-time");
         } else {
@@ -181,7 +181,11 @@ impl Morph {
             let pieces = f.pieces?;
             let pieces = if pieces == 1 { "1 piece".into() } else { format!("{pieces} pieces") };
             let t = run::time_word(f.t);
-            Some(format!("t {t}: {:.0}% of the mean volume, {pieces}", f.volume_kept? * 100.0))
+            let feet = f.feet.map_or_else(String::new, |n| format!(", {}", n.story()));
+            Some(format!(
+                "t {t}: {:.0}% of the mean volume, {pieces}{feet}",
+                f.volume_kept? * 100.0
+            ))
         });
         let did = report.searches.first().map_or_else(String::new, did);
         watch.say(&format!("kept: {}{did}", kept.collect::<Vec<_>>().join("; ")));
@@ -214,11 +218,18 @@ impl Morph {
         let mut shapes: BTreeMap<String, ShapeEntry> =
             names.iter().cloned().zip(self.reading.shapes(&self.inputs)?).collect();
         if self.align == Align::Pose {
-            let looked = suggest::look(shapes.into_iter().collect(), Path::new(""), watch)?;
+            let grid = self.grid();
+            let looked =
+                suggest::look(shapes.clone().into_iter().collect(), Path::new(""), &grid, watch)?;
             for guess in &looked.suggestion.shapes {
                 watch.say(&format!("{}: {}", guess.name, features::words(guess)));
             }
-            shapes = looked.shapes.into_iter().collect();
+            for (name, mut entry) in looked.shapes {
+                if !self.auto() {
+                    entry.thicken = shapes.get(&name).and_then(|e| e.thicken.clone());
+                }
+                shapes.insert(name, entry);
+            }
         }
         if self.align == Align::Box {
             for name in &names[1..] {
@@ -245,11 +256,7 @@ impl Morph {
         }
         let recipe = Recipe {
             version: VERSION,
-            grid: GridEntry {
-                resolution: self.fineness.resolution,
-                voxel: self.fineness.voxel,
-                ..GridEntry::default()
-            },
+            grid: self.grid(),
             shapes,
             morph,
             output: OutputEntry {
@@ -261,6 +268,14 @@ impl Morph {
         };
         recipe.validate().map_err(|p| Failure::usage(p.to_string()))?;
         Ok(recipe)
+    }
+
+    fn grid(&self) -> GridEntry {
+        GridEntry {
+            resolution: self.fineness.resolution,
+            voxel: self.fineness.voxel,
+            ..GridEntry::default()
+        }
     }
 
     fn rows(&self, names: &[String]) -> Result<fieldgraft::recipe::Weights, Failure> {

@@ -10,6 +10,7 @@ pub mod sample;
 pub mod sampled;
 pub mod skin;
 pub mod solid;
+pub mod walls;
 
 use crate::num::{Aabb, Interval};
 use glam::DVec3;

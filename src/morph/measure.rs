@@ -20,12 +20,12 @@ const LEAST_REACH: f64 = 20.0;
 const REACH_MARGIN: f64 = 1.1;
 /// Largest level of the linear form, mm: more fattens thin members instead of mending them.
 const LEVEL_CAP: f64 = 12.0;
-/// Largest share of its half thickness by which a shape is thinned: more breaks its thinner members.
-const THINNEST: f64 = 0.4;
+/// Largest share of its half thickness by which a shape is thinned: more leaves nothing of its traits.
+const THINNEST: f64 = 0.7;
 /// Largest share by which a shape is thickened where the merged shapes have too little volume.
 const THICKEST: f64 = 0.3;
 /// A share at which even a shape of nine tenths of the weight is at its limit.
-const LARGEST_SHARE: f64 = 2.0;
+const LARGEST_SHARE: f64 = 3.5;
 /// Halvings of the range of shares: to a thousandth.
 const HALVINGS: u32 = 12;
 /// Ratio of the weights from which on a lesser shape is there whole: below it parts come and go.
@@ -44,46 +44,110 @@ pub(super) struct Measured {
     pub thin: Vec<f64>,
 }
 
-/// Parameters of one feature from its samples: `g` and weights `lam` of the k shapes; `sizes` are the
-/// volumes of their elements over that of the result's.
-pub(super) fn measured(g: &[f64], lam: &[f64], sizes: &[f64], inner: Inner) -> Measured {
-    let (mut local, wanted) = local(g, lam, sizes);
+/// Half of the least thickness that a member is thinned to, cells: less falls between samples.
+const HALF_LEAST: f64 = 0.75;
+/// Share of a shape's volume in a feature that may be in members thinner than its thin ones. Smaller, a
+/// few posts keep a thick back from being thinned (volumes of 1.5 to 2 over a third of 84 frames); where
+/// this breaks them the search takes the union.
+const THIN_MEMBERS: f64 = 0.3;
+/// Least rate at which the depth grows on the way to the middle of a member: along the axis of a leg that
+/// widens it grows more slowly.
+const CLIMB: f64 = 0.3;
+
+/// Samples of a feature: a cube of them, a row a sample.
+pub(super) struct Site<'a> {
+    /// Values of the k shapes.
+    pub g: &'a [f64],
+    /// Volumes of the shapes' elements over that of the result's.
+    pub sizes: &'a [f64],
+    /// From sample to sample, mm; none where the samples are no cube.
+    pub step: Option<DVec3>,
+    /// Side of the result's cells, mm.
+    pub cell: f64,
+}
+
+/// Parameters of one feature from its samples and the weights `lam` of the k shapes.
+pub(super) fn measured(at: &Site<'_>, lam: &[f64], inner: Inner) -> Measured {
+    let (mut local, wanted) = local(at.g, lam, at.sizes);
     let mut thin = vec![0.0; lam.len()];
     match inner {
         Inner::Linear => (local.apart, local.level) = (0.0, 0.0),
         Inner::Mean => local.apart = 0.0,
         Inner::Grow | Inner::Erode | Inner::SpaceTime => local.apart = 1.0,
-        Inner::Merge => {
+        Inner::Merge | Inner::Union => {
             local.apart = 1.0;
             local.reach /= WHOLE_FROM;
-            thin = thinning(g, lam, local.reach, wanted);
+            if inner == Inner::Merge {
+                thin = thinning(at, lam, local.reach, wanted);
+            }
         }
         Inner::Auto => {}
     }
     Measured { local, thin }
 }
 
-/// How much each shape is thinned (thickened, where negative) so that the merged shapes fill `wanted`
-/// samples: shares of the half thickness of each, larger for those that weigh less.
-fn thinning(g: &[f64], lam: &[f64], reach: f64, wanted: f64) -> Vec<f64> {
-    let k = lam.len();
-    let (mut count, mut depth) = (vec![0u64; k], vec![0.0; k]);
-    for row in g.chunks_exact(k) {
-        for (j, &v) in row.iter().enumerate() {
-            if v < 0.0 {
-                count[j] += 1;
-                depth[j] -= v;
+/// Half thicknesses of a shape, mm.
+#[derive(Clone, Copy, Default)]
+struct Half {
+    mean: f64,
+    /// Of its thin members.
+    low: f64,
+}
+
+impl Half {
+    fn of(at: &Site<'_>, k: usize, j: usize) -> Self {
+        let depth = |n: usize| -at.g[n * k + j];
+        let inside: Vec<usize> = (0..at.g.len() / k).filter(|&n| depth(n) > 0.0).collect();
+        if inside.is_empty() {
+            return Self::default();
+        }
+        let sum: f64 = inside.iter().map(|&n| depth(n)).sum();
+        // depths in a plate run evenly from none to its half thickness
+        let mean = 2.0 * sum / inside.len() as f64;
+        let Some(step) = at.step else { return Self { mean, low: mean } };
+        let mut middle: Vec<f64> = inside.iter().map(|&n| climb(&depth, step, n)).collect();
+        let rank = (THIN_MEMBERS * (middle.len() - 1) as f64) as usize;
+        let low = *middle.select_nth_unstable_by(rank, f64::total_cmp).1;
+        Self { mean, low }
+    }
+}
+
+/// The depth in the middle of the member that sample `n` lies in.
+fn climb(depth: &impl Fn(usize) -> f64, step: DVec3, mut n: usize) -> f64 {
+    let side = FEATURE_SIDE;
+    let ways = [(1, side, step.x), (side, side, step.y), (side * side, side, step.z)];
+    loop {
+        let here = depth(n);
+        let mut best = (CLIMB, n);
+        for (by, side, step) in ways {
+            let place = n / by % side;
+            let next = [(place > 0).then(|| n - by), (place + 1 < side).then(|| n + by)];
+            for m in next.into_iter().flatten() {
+                let rate = (depth(m) - here) / step;
+                if rate > best.0 {
+                    best = (rate, m);
+                }
             }
         }
+        if best.1 == n {
+            return here;
+        }
+        n = best.1;
     }
-    // depths in a plate run evenly from none to its half thickness
-    let half = |j: usize| if count[j] > 0 { 2.0 * depth[j] / count[j] as f64 } else { 0.0 };
-    let half: Vec<f64> = (0..k).map(|j| if lam[j] > 0.0 { half(j) } else { 0.0 }).collect();
+}
+
+/// How much each shape is thinned (thickened, where negative) so that the merged shapes fill `wanted`
+/// samples: shares of the half thickness of each, larger for those that weigh less. Thin members keep
+/// what the cells can hold.
+fn thinning(at: &Site<'_>, lam: &[f64], reach: f64, wanted: f64) -> Vec<f64> {
+    let k = lam.len();
+    let half = |j: usize| if lam[j] > 0.0 { Half::of(at, k, j) } else { Half::default() };
+    let half: Vec<Half> = (0..k).map(half).collect();
     // by weight: at one half all shares are equal, at one there is nothing to thin
     let thin = |share: f64| -> Vec<f64> {
-        let by = |(h, l): (&f64, &f64)| {
+        let by = |(h, l): (&Half, &f64)| {
             let by = (share * 2.0 * (1.0 - l)).clamp(-THICKEST, THINNEST);
-            (by * h).max(-LEVEL_CAP)
+            (by * h.mean).min((h.low - HALF_LEAST * at.cell).max(0.0)).max(-LEVEL_CAP)
         };
         half.iter().zip(lam).map(by).collect()
     };
@@ -91,7 +155,7 @@ fn thinning(g: &[f64], lam: &[f64], reach: f64, wanted: f64) -> Vec<f64> {
     let mut inside = |share: f64| {
         let thin = thin(share);
         let mut n = 0u64;
-        for g in g.chunks_exact(k) {
+        for g in at.g.chunks_exact(k) {
             for (r, (g, t)) in row.iter_mut().zip(g.iter().zip(&thin)) {
                 *r = g + t;
             }
@@ -162,21 +226,33 @@ pub(super) fn sizes(f: &Placed) -> Vec<f64> {
     f.maps.iter().map(|m| m.to.half.element_product() / own).collect()
 }
 
+/// From sample to sample of a feature, mm.
+pub(super) fn step(f: &Placed) -> DVec3 {
+    2.0 * f.element.half / FEATURE_SIDE as f64
+}
+
 /// Measures the features of a hybrid, or the whole shapes over `domain` where it has none.
 pub(super) fn locals(
     h: &Hybrid,
     inners: &[Inner],
     domain: &Aabb,
+    cell: f64,
     job: &dyn Job,
 ) -> Result<Vec<Measured>, Cancelled> {
     if h.features.is_empty() {
         let looked = look(h, &lattice(domain), job)?;
         let inner = inners.first().copied().unwrap_or(Inner::Auto);
-        return Ok(vec![measured(&looked.g, &h.lam, &[], inner)]);
+        let site = Site { g: &looked.g, sizes: &[], step: None, cell };
+        return Ok(vec![measured(&site, &h.lam, inner)]);
     }
     let all = rows(h, job)?;
     let each = h.features.iter().zip(inners).zip(&all);
-    Ok(each.map(|((f, &inner), rows)| measured(rows, &f.lam, &sizes(f), inner)).collect())
+    let one = |((f, &inner), rows): ((&Placed, &Inner), &Vec<f64>)| {
+        let sizes = sizes(f);
+        let site = Site { g: rows, sizes: &sizes, step: Some(step(f)), cell };
+        measured(&site, &f.lam, inner)
+    };
+    Ok(each.map(one).collect())
 }
 
 /// Values of the shapes at the samples of each feature, a row a sample.
@@ -272,4 +348,33 @@ fn look(h: &Hybrid, at: &[DVec3], job: &dyn Job) -> Result<Looked, Cancelled> {
         all.lam.extend(p.lam);
     }
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A board of half thickness 6, and four rods of half thickness 4 with about as much volume.
+    #[test]
+    fn thin_members_beside_a_thick_one_are_seen() {
+        let half = DVec3::splat(48.0);
+        let depth = |p: DVec3| {
+            let board = (p.z.abs() - 6.0).max(p.x.abs() - 10.0);
+            let rod = |x: f64| (p.x - x).abs().max(p.y.abs()) - 4.0;
+            [-38.0, -22.0, 22.0, 38.0].map(rod).into_iter().fold(board, f64::min)
+        };
+        let g: Vec<f64> = cube(FEATURE_SIDE).map(|q| depth(q * half)).collect();
+        let site = |cell: f64| Site { g: &g, sizes: &[1.0], step: Some(half / 12.0), cell };
+        let found = Half::of(&site(0.0), 1, 0);
+        assert!((2.0..7.0).contains(&found.mean), "{}", found.mean);
+        assert!((1.0..=4.0).contains(&found.low), "{}", found.low);
+        // cells of half a member and more leave nothing to thin
+        let two: Vec<f64> = g.iter().flat_map(|v| [*v, *v]).collect();
+        let thin = |cell: f64| {
+            let at = Site { g: &two, sizes: &[0.2, 0.2], step: Some(half / 12.0), cell };
+            measured(&at, &[0.5, 0.5], Inner::Merge).thin
+        };
+        assert!(thin(0.5)[0] > 0.5, "{:?}", thin(0.5));
+        assert_eq!(thin(6.0), [0.0, 0.0]);
+    }
 }

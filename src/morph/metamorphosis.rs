@@ -4,15 +4,25 @@ use super::Morph;
 use super::hybrid::{Hybrid, Placed};
 use super::inner::{Local, Mix};
 use super::measure;
-use super::plan::{Course, Form, Frames, Inner, MorphError, Plan};
+use super::plan::{Course, Foot, Form, Frames, Inner, MorphError, Plan};
 use crate::element::{Element, average};
 use crate::field::Shared;
 use crate::job::{Cancelled, Job};
 use crate::num::Aabb;
+use glam::DVec3;
 use std::sync::Arc;
 
 pub(super) struct Metamorphosis {
     pub plan: Plan,
+}
+
+/// A foot of a shape, where the hybrid should have it.
+pub(super) struct Step {
+    pub foot: Foot,
+    /// Which shape's.
+    pub shape: usize,
+    /// Which feature carries it there.
+    pub feature: usize,
 }
 
 const UNMEASURED: Local = Local { reach: 0.0, depth: 0.0, apart: 1.0, level: 0.0 };
@@ -73,6 +83,39 @@ impl Metamorphosis {
 }
 
 impl Metamorphosis {
+    /// The feet of all shapes where the features carry them to at `t`; none without features.
+    pub fn steps(&self, t: f64) -> Vec<Step> {
+        let placed = self.place(t);
+        let mut all = Vec::new();
+        for (shape, foot) in self.feet() {
+            let near =
+                |i: &usize| self.plan.features[*i].elements[shape].gauge(0.0).distance(foot.at);
+            let nearest = (0..placed.len()).min_by(|a, b| near(a).total_cmp(&near(b)));
+            let Some(feature) = nearest else { continue };
+            let (own, result) =
+                (&self.plan.features[feature].elements[shape], &placed[feature].element);
+            let at = own.between(result).pull(foot.at);
+            // an upright foot of the one is the upright foot of the other
+            let side = |d: DVec3| own.between(result).pull(foot.at + foot.reach * d).distance(at);
+            let reach = side(DVec3::X).max(side(DVec3::Y));
+            all.push(Step { foot: Foot { at, reach }, shape, feature });
+        }
+        all
+    }
+
+    fn feet(&self) -> impl Iterator<Item = (usize, Foot)> + '_ {
+        let shapes = self.plan.feet.iter().take(self.plan.shapes.len()).enumerate();
+        shapes.flat_map(|(j, feet)| feet.iter().map(move |f| (j, *f)))
+    }
+}
+
+/// Whether a shape weighs most of all, so that its feet have to stand.
+pub(super) fn leads(lam: &[f64], shape: usize) -> bool {
+    let most = lam.iter().copied().fold(0.0, f64::max);
+    lam.get(shape).is_some_and(|l| *l > 0.0 && *l >= most - 1e-9)
+}
+
+impl Metamorphosis {
     /// The hybrid at `t` before anything is measured.
     pub fn unmeasured(&self, t: f64) -> Hybrid {
         let plan = &self.plan;
@@ -88,7 +131,7 @@ impl Metamorphosis {
                 Inner::Linear | Inner::SpaceTime => Mix::Linear,
                 Inner::Grow => Mix::Grow,
                 Inner::Erode => Mix::Erode,
-                Inner::Auto | Inner::Mean | Inner::Merge => Mix::Auto,
+                Inner::Auto | Inner::Mean | Inner::Merge | Inner::Union => Mix::Auto,
             },
             weighting: plan.weighting,
             sharp: plan.sharp,
@@ -113,7 +156,7 @@ impl Morph for Metamorphosis {
         if plan.inner == Inner::SpaceTime {
             h.mix = Mix::SpaceTime(measure::bounded(&h, &plan.space_time, &domain, job)?);
         } else if !matches!(h.mix, Mix::Linear) {
-            let all = measure::locals(&h, &self.inners(), &domain, job)?;
+            let all = measure::locals(&h, &self.inners(), &domain, plan.cell, job)?;
             if h.features.is_empty() {
                 for m in &all {
                     (h.local, h.thin) = (m.local, m.thin.clone());

@@ -21,7 +21,8 @@ mod whole;
 
 pub use moving::Moment;
 pub use plan::{
-    Anchor, Blend, Course, Feature, Form, Frames, Inner, MorphError, Part, Plan, Scheme, SpaceTime,
+    Anchor, Blend, Course, Feature, Foot, Form, Frames, Inner, MorphError, Part, Plan, Scheme,
+    SpaceTime,
 };
 pub use tune::{Choice, Outlook, Style, Tuning, tune};
 
@@ -52,6 +53,18 @@ impl Morph for Arc<dyn Morph> {
     fn notes(&self) -> Vec<String> {
         (**self).notes()
     }
+}
+
+/// Where a hybrid of this plan should touch the floor at `t`: the feet of the shapes that weigh most where
+/// they are, carried there by the features. None without features, or with frames other than the mean.
+///
+/// # Errors
+/// A plan that cannot be carried out.
+pub fn feet(plan: &Plan, t: f64) -> Result<Vec<Foot>, MorphError> {
+    let checked = metamorphosis::Metamorphosis::new(plan.clone())?;
+    let lam: Vec<Vec<f64>> = plan.features.iter().map(|f| f.morph.at(t)).collect();
+    let steps = checked.steps(t).into_iter();
+    Ok(steps.filter(|s| metamorphosis::leads(&lam[s.feature], s.shape)).map(|s| s.foot).collect())
 }
 
 #[cfg(test)]

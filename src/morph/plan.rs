@@ -48,6 +48,15 @@ impl Feature {
     }
 }
 
+/// A place where a shape touches the floor, and its hybrids should.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot {
+    /// Its middle, on the floor.
+    pub at: glam::DVec3,
+    /// Radius in the plan that holds all of it, mm.
+    pub reach: f64,
+}
+
 /// How the weights of the shapes depend on time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Course {
@@ -99,6 +108,8 @@ pub enum Inner {
     Mean,
     /// As grow, with the members thinned in each feature so that the mean volume is kept.
     Merge,
+    /// As merge, with nothing thinned.
+    Union,
 }
 
 impl Inner {
@@ -215,6 +226,11 @@ pub struct Plan {
     pub frames: Frames,
     /// Parameters of [`Inner::SpaceTime`].
     pub space_time: SpaceTime,
+    /// Side of the cells that results are sampled with, mm: nothing is made thinner than they can hold.
+    /// Nought leaves that open.
+    pub cell: f64,
+    /// Where each shape touches the floor; may be empty.
+    pub feet: Vec<Vec<Foot>>,
 }
 
 impl Plan {
@@ -235,6 +251,8 @@ impl Plan {
             sharp: Weighting::Transfinite,
             frames: Frames::Average,
             space_time: SpaceTime::default(),
+            cell: 0.0,
+            feet: Vec::new(),
         }
     }
 }
@@ -266,7 +284,7 @@ pub enum MorphError {
     /// A function of a feature that cannot stand beside others.
     #[error(
         "feature `{0}`: space-time and erode are for the whole morph; a feature of its own takes \
-         linear, grow, auto, mean or merge, in a morph of one of these"
+         linear, grow, auto, mean, merge or union, in a morph of one of these"
     )]
     Inner(String),
     /// An anchor is missing or there is one too many.

@@ -90,11 +90,14 @@ pub(super) fn plan(k: usize, inner: Inner, blend: Blend) -> Plan {
         sharp: Weighting::Smooth { epsilon: 1.0, power: 4.0 },
         frames: Frames::Average,
         space_time: SpaceTime::default(),
+        cell: 0.0,
+        feet: Vec::new(),
     }
 }
 
-const INNERS: [Inner; 7] = [
+const INNERS: [Inner; 8] = [
     Inner::Linear,
+    Inner::Union,
     Inner::SpaceTime,
     Inner::Grow,
     Inner::Erode,
@@ -340,5 +343,26 @@ proptest! {
             let p = DVec3::new(next() * 50.0, next() * 50.0, next() * 30.0 + 30.0);
             prop_assert!((a.value(p) - b.value(p)).abs() < 1e-9);
         }
+    }
+}
+
+#[test]
+fn feet_go_where_their_features_go() {
+    let mut p = plan(2, Inner::Merge, Blend::Maps);
+    // the legs' own: (-30, 0) and (20, -10) in the plan, on the floor
+    let foot = |x: f64, y: f64| Foot { at: DVec3::new(x, y, 0.0), reach: 4.0 };
+    p.feet = vec![vec![foot(-30.0, 0.0)], vec![foot(20.0, -10.0)]];
+    let at = |t: f64| feet(&p, t).unwrap();
+    // at either end only that shape's has to stand
+    for (t, x, y) in [(0.0, -30.0, 0.0), (1.0, 20.0, -10.0)] {
+        let [foot] = at(t)[..] else { panic!("{:?}", at(t)) };
+        assert!(foot.at.distance(DVec3::new(x, y, 0.0)) < 1e-9 && (foot.reach - 4.0).abs() < 1e-9);
+    }
+    // half way both are the leg's
+    let half = at(0.5);
+    assert_eq!(half.len(), 2);
+    for foot in half {
+        // lengths are blended by their logarithms, so the leg is 0.4 mm short of the middle one
+        assert!(foot.at.distance(DVec3::new(-5.0, -5.0, 0.2)) < 0.01, "{foot:?}");
     }
 }

@@ -18,7 +18,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Samples along the longest side when the mirror plane is looked for.
 const COARSE: f64 = 60.0;
 /// Samples along the longest side when the parts are.
-const FINE: f64 = 90.0;
+pub(super) const FINE: f64 = 90.0;
 /// Turns nearer than this to a quarter turn are made one, radians.
 const SNAP: f64 = 2.0 * PI / 180.0;
 /// Least side of a seat, a share of the height. Lower, poles are seats; bar stools have 0.3.

@@ -55,15 +55,12 @@ pub(super) fn block(low: DVec3, high: DVec3) -> Result<Element, ElementError> {
     Element::block(0.5 * (low + high), half, DQuat::IDENTITY)
 }
 
-/// The slice of a column that stands for a leg in a direction.
-pub(super) fn slice(c: &Column, to: DVec2, low: f64, high: f64) -> Result<Element, ElementError> {
-    let at = c.axis + 0.5 * c.radius * to;
-    Element::rod(at.extend(low), at.extend(high.max(low + 1.0)), 0.5 * c.radius + ROOM)
-}
-
-/// All of a column.
-pub(super) fn shaft(c: &Column, low: f64, high: f64) -> Result<Element, ElementError> {
-    Element::rod(c.axis.extend(low), c.axis.extend(high.max(low + 1.0)), c.radius * LOOSE + ROOM)
+/// All of a column above what it stands on.
+pub(super) fn column(chair: &Chair, c: &Column) -> Result<Element, ElementError> {
+    let board = chair.seat.top - chair.seat.thickness;
+    let low = c.hub.min(0.8 * board);
+    let high = board.max(low + 1.0);
+    Element::rod(c.axis.extend(low), c.axis.extend(high), c.radius * LOOSE + ROOM)
 }
 
 /// All that a column stands on.
@@ -72,22 +69,27 @@ pub(super) fn disc(c: &Column) -> Result<Element, ElementError> {
     block((c.axis - reach).extend(0.0) - ROOM, (c.axis + reach).extend(c.hub.max(5.0)) + ROOM)
 }
 
-/// The spoke that stands for a foot in a direction, or a bar of the disc.
-pub(super) fn spoke(c: &Column, to: DVec2) -> Result<Element, ElementError> {
-    let near = |s: &&DVec2| (**s - c.axis).normalize_or_zero().dot(to);
-    let tip = c.spokes.iter().max_by(|a, b| near(a).total_cmp(&near(b)));
-    let tip = tip.copied().unwrap_or(c.axis + c.reach * to);
-    let high = c.hub.max(10.0);
-    let radius = 0.5 * high + ROOM;
-    Element::rod(tip.extend(0.5 * high), c.axis.extend(0.5 * high), radius)
-}
-
-/// The corner of a solid base in a direction.
-pub(super) fn corner(s: &Seat, to: DVec2) -> Result<Element, ElementError> {
-    let centre = 0.5 * (s.low + s.high);
-    let far = centre + 0.5 * (s.high - s.low) * to.signum();
-    let (low, high) = (centre.min(far), centre.max(far));
-    block(low.extend(0.0), high.extend((s.top - s.thickness).max(1.0)))
+/// All that is below the board.
+pub(super) fn base(c: &Chair) -> Result<Element, ElementError> {
+    let board = (c.seat.top - c.seat.thickness).max(1.0);
+    let mut low = DVec2::INFINITY;
+    let mut high = DVec2::NEG_INFINITY;
+    let mut add = |p: DVec2, radius: f64| {
+        low = low.min(p - radius);
+        high = high.max(p + radius);
+    };
+    match &c.base {
+        Base::Column(col) => add(col.axis, col.reach),
+        Base::Solid => [c.seat.low, c.seat.high].into_iter().for_each(|p| add(p, 0.0)),
+        base => {
+            let ends = struts(base).iter().flat_map(|l| [(l.foot, l.radius), (l.head, l.radius)]);
+            ends.for_each(|(p, r)| add(p.truncate(), r));
+        }
+    }
+    if low.x > high.x {
+        (low, high) = (c.seat.low, c.seat.high);
+    }
+    block(low.extend(0.0) - ROOM, high.extend(board + OVERLAP))
 }
 
 /// The struts of a base.

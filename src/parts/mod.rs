@@ -30,6 +30,7 @@
 mod above;
 mod base;
 mod chair;
+mod feet;
 mod find;
 mod fit;
 mod legs;
@@ -45,6 +46,7 @@ mod volume;
 mod tests;
 
 pub use chair::{Arm, Back, Base, Chair, Column, Leg, Pose, Seat, Stretcher};
+pub use feet::{Foot, feet};
 pub use stretchers::Side;
 
 use crate::element::Element;
@@ -103,8 +105,8 @@ pub enum Note {
     Found,
     /// These shapes (by index) have no such part; their element is where it would be.
     Absent(Vec<usize>),
-    /// Legs on one side, slices and spokes of a column on the other.
-    Bundle,
+    /// One element round several members, which have no partners one by one: legs and a column.
+    Whole,
     /// Different numbers of legs: one may stand for two.
     Mixed,
     /// No part of a chair: a slab of the whole shape.

@@ -1,6 +1,6 @@
 //! The parts of several chairs brought into correspondence.
 
-use super::chair::{Base, Chair, Leg, Stretcher};
+use super::chair::{Base, Chair, Column, Leg, Stretcher};
 use super::fit;
 use super::legs;
 use super::stretchers::Side;
@@ -41,18 +41,19 @@ pub(super) fn pair(chairs: &[&Chair]) -> Vec<Paired> {
             put(name.to_owned(), elements, sure(0), note);
         }
     }
-    let column = chairs.iter().any(|c| matches!(c.base, Base::Column(_)));
+    if !alike(chairs) {
+        put("base".to_owned(), chairs.iter().map(|c| fit::base(c)).collect(), sure(2), Note::Whole);
+        return all;
+    }
+    if chairs.iter().all(|c| matches!(c.base, Base::Column(_))) {
+        put("column".to_owned(), columns(chairs, fit::column), sure(2), Note::Found);
+        put("foot".to_owned(), columns(chairs, |_, col| fit::disc(col)), sure(2), Note::Found);
+        return all;
+    }
     for slot in slots(chairs) {
-        let legs = |part: Part| chairs.iter().map(|c| strut(c, &slot, part)).collect();
-        let name = |what: &str| format!("{what} {}", slot.name).trim_end().to_owned();
-        if column {
-            let what = if slot.name.is_empty() { "column" } else { "leg" };
-            put(name(what), legs(Part::Upper), sure(2), Note::Bundle);
-            put(name("foot"), legs(Part::Foot), sure(2), Note::Bundle);
-        } else {
-            let note = if mixed(chairs) { Note::Mixed } else { Note::Found };
-            put(name("leg"), legs(Part::Whole), sure(2), note);
-        }
+        let legs = chairs.iter().map(|c| strut(c, &slot)).collect();
+        let note = if mixed(chairs) { Note::Mixed } else { Note::Found };
+        put(format!("leg {}", slot.name).trim_end().to_owned(), legs, sure(2), note);
     }
     for (name, elements) in stretchers(chairs) {
         put(name, elements, sure(2), Note::Found);
@@ -115,18 +116,26 @@ fn shared(
     Some((elements, note))
 }
 
-/// Which part of a leg an element is for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Part {
-    Whole,
-    /// Above the hub.
-    Upper,
-    /// Below the hub.
-    Foot,
+/// Whether the bases are of one kind, so that their members can be paired: crossing legs and legs that
+/// do not cross, or legs and a column, have nothing in common but that they carry a seat.
+fn alike(chairs: &[&Chair]) -> bool {
+    let kind = |c: &Chair| std::mem::discriminant(&c.base);
+    let crossed = |c: &Chair| matches!(c.base, Base::Crossed(_));
+    // where they cross, and how far they lean, differs too much
+    chairs.len() == 1 || chairs.iter().all(|c| kind(c) == kind(chairs[0]) && !crossed(c))
 }
 
-/// Where a foot ends, a share of the height up to the board, on chairs that have no hub.
-const HUB: f64 = 0.2;
+/// Elements of a part of columns.
+fn columns(
+    chairs: &[&Chair],
+    part: impl Fn(&Chair, &Column) -> Result<Element, ElementError>,
+) -> Result<Vec<Element>, ElementError> {
+    let of = |c: &&Chair| match &c.base {
+        Base::Column(col) => Some(part(c, col)),
+        _ => None,
+    };
+    chairs.iter().filter_map(of).collect()
+}
 
 /// The places legs are matched to: those of the chair with four legs, else with most.
 fn slots(chairs: &[&Chair]) -> Vec<Slot> {
@@ -136,7 +145,7 @@ fn slots(chairs: &[&Chair]) -> Vec<Slot> {
     let d = FRAC_1_SQRT_2;
     let slot = |name: &str, x: f64, y: f64| Slot { name: name.to_owned(), to: DVec2::new(x, y) };
     match count {
-        // nothing but columns and solids: one body carries each
+        // one body carries each
         0 => vec![slot("", 0.0, 1.0)],
         2 => vec![slot("left", -1.0, 0.0), slot("right", 1.0, 0.0)],
         4 => vec![
@@ -165,48 +174,8 @@ fn outward(leg: &Leg, chair: &Chair) -> DVec2 {
 }
 
 /// The element of a chair that stands for the leg of a slot.
-fn strut(c: &Chair, slot: &Slot, part: Part) -> Result<Element, ElementError> {
-    let board = c.seat.top - c.seat.thickness;
-    match &c.base {
-        Base::Column(col) if slot.name.is_empty() && part == Part::Foot => fit::disc(col),
-        Base::Column(col) if slot.name.is_empty() && part == Part::Upper => {
-            fit::shaft(col, col.hub.min(0.8 * board), board)
-        }
-        Base::Column(col) if part == Part::Foot => fit::spoke(col, slot.to),
-        Base::Column(col) if part == Part::Upper => {
-            fit::slice(col, slot.to, col.hub.min(0.8 * board), board)
-        }
-        Base::Column(col) => fit::block(
-            (col.axis - col.reach).extend(0.0),
-            (col.axis + col.reach).extend(board.max(1.0)),
-        ),
-        base => match matched(c, slot) {
-            Some(leg) => fit::leg(&piece(&leg, part)),
-            None if matches!(base, Base::Solid) && slot.name.is_empty() => {
-                fit::block(c.seat.low.extend(0.0), c.seat.high.extend(board.max(1.0)))
-            }
-            None => {
-                let corner = fit::corner(&c.seat, slot.to)?;
-                let (low, high) = (corner.centre - corner.half, corner.centre + corner.half);
-                let cut = low.z + HUB * (high.z - low.z);
-                match part {
-                    Part::Whole => Ok(corner),
-                    Part::Upper => fit::block(low.with_z(cut), high),
-                    Part::Foot => fit::block(low, high.with_z(cut)),
-                }
-            }
-        },
-    }
-}
-
-/// The part of a leg above or below its hub.
-fn piece(leg: &Leg, part: Part) -> Leg {
-    let hub = leg.foot.lerp(leg.head, HUB);
-    match part {
-        Part::Whole => *leg,
-        Part::Upper => Leg { foot: hub, ..*leg },
-        Part::Foot => Leg { head: hub, ..*leg },
-    }
+fn strut(c: &Chair, slot: &Slot) -> Result<Element, ElementError> {
+    matched(c, slot).map_or_else(|| fit::base(c), |leg| fit::leg(&leg))
 }
 
 /// The leg for a slot; one that has to stand for two is cut in halves.

@@ -3,7 +3,7 @@ use super::mask::{Mask, line, quantile};
 use super::mirror::Mirror;
 use super::stretchers::Side;
 use super::volume::Volume;
-use super::{Note, Suggestion, suggest};
+use super::{Note, Suggestion, feet, suggest};
 use crate::element::Element;
 use crate::field::Field;
 use crate::field::csg::Join;
@@ -161,7 +161,7 @@ fn stretchers_are_told_by_side() {
 }
 
 #[test]
-fn columns_and_bundles() {
+fn columns_and_their_spokes() {
     let mut tulip = vec![board(), back(), rod([0.0, 0.0, 20.0], [0.0, 0.0, 421.0], 30.0)];
     tulip.push(rod([0.0, 0.0, 0.0], [0.0, 0.0, 25.0], 200.0));
     let tulip = solid(&tulip, 1.0, 0.0, [0.0; 3]);
@@ -170,8 +170,12 @@ fn columns_and_bundles() {
     assert_eq!(names(&look(&tulip)), ["seat", "back", "column", "foot"]);
     let four = solid(&chair(), 1.0, 0.0, [0.0; 3]);
     let s = suggest(&[("tulip", &tulip), ("four", &four)], &Quiet).unwrap();
-    assert_eq!(s.features.len(), 2 + 8);
-    assert!(s.features[2..].iter().all(|f| f.note == Note::Bundle));
+    assert_eq!(names(&s), ["seat", "back", "base"]);
+    assert_eq!(s.features[2].note, Note::Whole);
+    // the disc reaches 200 mm; the feet stand 209 and 187 mm off the middle and are 40 mm thick
+    let half: Vec<DVec3> = s.features[2].elements.iter().map(|e| e.half).collect();
+    assert!((half[0].x - 200.0).abs() < STEP, "{half:?}");
+    assert!((half[1].x - 229.0).abs() < STEP && (half[1].y - 207.0).abs() < STEP, "{half:?}");
     let star: Vec<Element> = (0..5)
         .map(|i| {
             let a = f64::from(i) * std::f64::consts::TAU / 5.0 + 0.3;
@@ -300,4 +304,24 @@ fn mirrors_are_found_off_the_middle() {
     assert!(a.score > 0.95 && b.score > 0.95, "{a:?} {b:?}");
     assert!(off(a.yaw) < 0.06 && off(b.yaw) < 0.06, "{a:?} {b:?}");
     assert!((a.yaw - b.yaw).abs() > 1.0);
+}
+
+#[test]
+fn feet_are_where_the_floor_is_touched() {
+    let four = solid(&chair(), 1.0, 0.0, [0.0, 0.0, 30.0]);
+    let found = feet(&four, &Quiet).unwrap();
+    assert_eq!(found.len(), 4);
+    for f in &found {
+        assert!(
+            (f.at.x.abs() - 209.0).abs() < STEP && (f.at.y.abs() - 187.0).abs() < STEP,
+            "{f:?}"
+        );
+        // legs that lean stand on an edge
+        assert!((f.at.z - 30.0).abs() < 2.0 && (f.reach - 20.0).abs() < 2.0 * STEP, "{f:?}");
+    }
+    let disc = solid(&[rod([0.0; 3], [0.0, 0.0, 25.0], 200.0)], 1.0, 0.0, [0.0; 3]);
+    assert_eq!(feet(&disc, &Quiet).unwrap().len(), 1);
+    for f in [&Endless as &dyn Field, &Nothing] {
+        assert!(feet(f, &Quiet).unwrap().is_empty());
+    }
 }

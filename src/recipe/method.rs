@@ -165,6 +165,8 @@ pub enum InnerEntry {
     Mean,
     /// As grow, with the members thinned so that the mean volume is kept.
     Merge,
+    /// As merge, with nothing thinned: the shapes one upon the other.
+    Union,
 }
 
 /// How distances to features become weights.

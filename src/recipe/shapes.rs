@@ -46,7 +46,8 @@ pub struct ShapeEntry {
     /// box that holds it at all times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
-    /// Thickness given to sheets that have none, mm; or `{ mm = 6, which = "all" }`.
+    /// Thickness given to sheets that have none, mm; or `{ mm = 6, which = "all" }`, or `"thin"` for
+    /// whatever is thinner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thicken: Option<PlainOr<f64, ThickenEntry>>,
     /// How inside and outside are told apart.
@@ -109,6 +110,9 @@ pub enum ThickenWhich {
     Open,
     /// Every shell.
     All,
+    /// No shell as such, but whatever is thinner: faces that enclose nothing, and thin walls and members
+    /// of solids.
+    Thin,
 }
 
 /// How inside and outside are told apart.

@@ -3,6 +3,7 @@
 
 mod animation;
 pub mod compare;
+mod feet;
 mod files;
 mod frame;
 mod predict;
@@ -10,6 +11,7 @@ mod report;
 mod system;
 
 pub use animation::{AnimationReport, MOST_FRAMES, Playing, Reel, animation_memory};
+pub use feet::Feet;
 pub use files::{Names, place_text, time_word};
 pub use frame::{FrameResult, Work, make};
 pub use predict::{Prediction, coarsening, predict, predict_one, probe};
@@ -141,6 +143,10 @@ pub fn run(
             frame.notes = notes.into_iter().filter(|n| !report.notes.contains(n)).collect();
             report.notes.extend(frame.notes.iter().cloned());
             frame.mean_volume(variant.mean_volume(t));
+            let feet = variant.feet(t);
+            if let Some(mesh) = made.mesh.as_ref().filter(|_| !feet.is_empty()) {
+                frame.feet = Some(Feet::of(mesh, &feet, frame.voxel_mm));
+            }
             let image = match &made.mesh {
                 Some(mesh) => put(&mut frame, mesh, settings, job)?,
                 None => None,

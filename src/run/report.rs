@@ -1,6 +1,6 @@
 //! `run.json`: what was made, from what, how long it took.
 
-use super::AnimationReport;
+use super::{AnimationReport, Feet};
 use crate::check::{Crumbs, Health};
 use crate::scene::{Input, LiveShape, Search};
 use serde::Serialize;
@@ -56,6 +56,8 @@ pub struct FrameReport {
     pub undecided_cells: Option<u64>,
     /// Solids, crumbs left out.
     pub pieces: Option<u64>,
+    /// Feet that should stand on the floor, and those that do; where there are features.
+    pub feet: Option<Feet>,
     /// Loose pieces that were dropped.
     pub crumbs: Crumbs,
     /// Volume over the weighted mean of the parents' volumes.

@@ -12,6 +12,9 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+/// Loose pieces below this share of the volume are dropped: a leg of a chair has more.
+pub(super) const CRUMBS: f64 = 0.005;
+
 /// What a search chose for a hybrid.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Search {
@@ -71,7 +74,8 @@ pub(super) fn with_features(
         return Ok((recipe, vec![why.to_owned()]));
     }
     let entries = wanted.iter().map(|n| (n.clone(), recipe.shapes[n].clone())).collect();
-    let looked = suggest::look(entries, beside, job).map_err(|e| relocate(e, source))?;
+    let looked =
+        suggest::look(entries, beside, &recipe.grid, job).map_err(|e| relocate(e, source))?;
     let suggestion = looked.suggestion;
     let mut found: Vec<String> = suggestion.shapes.iter().map(words).collect();
     if suggestion.shapes.iter().any(|g| g.chair.is_none()) {
@@ -216,5 +220,6 @@ fn name_of(inner: Inner) -> InnerEntry {
         Inner::Auto => InnerEntry::Auto,
         Inner::Mean => InnerEntry::Mean,
         Inner::Merge => InnerEntry::Merge,
+        Inner::Union => InnerEntry::Union,
     }
 }

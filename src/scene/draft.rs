@@ -209,6 +209,7 @@ fn searches(
         });
         let (chosen, search) = found?;
         all.push(search);
+        recipe.output.crumbs.get_or_insert(auto::CRUMBS);
         match recipe.hybrids.get_mut(n) {
             Some(hybrid) => *hybrid = chosen,
             None => recipe.morph = chosen,

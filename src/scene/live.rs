@@ -9,11 +9,13 @@ use super::{Input, digest, surface};
 use crate::field::mesh::{MeshField, MeshFieldError, MeshOptions, Sign, Thicken, Which};
 use crate::field::sampled::Sampled;
 use crate::field::solid::Assembly;
+use crate::field::walls::thickened;
 use crate::field::{Field, Shared};
 use crate::job::{Cancelled, Job};
-use crate::mesh::{Assume, Unit, Up, read};
-use crate::morph::MorphError;
+use crate::mesh::{Assume, TriMesh, Unit, Up, read};
+use crate::morph::{Foot, MorphError};
 use crate::num::Aabb;
+use crate::parts;
 use crate::recipe::{
     self, LengthUnit, PlainOr, Problem, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,
     join,
@@ -48,6 +50,8 @@ pub struct LiveShape {
     pub volume: f64,
     /// The box round it, mm; of a shape that moves, at all times asked for.
     pub bounds: Aabb,
+    /// Where it touches the floor; of a shape that moves, or stands alone, unknown.
+    pub feet: Vec<Foot>,
     /// Seconds to make its field and to sample it.
     pub seconds: [f64; 2],
     /// The field itself, where a hybrid is this shape alone.
@@ -199,15 +203,29 @@ impl From<Cancelled> for Stop {
     }
 }
 
-/// The field of a placed shape for cells of `step` mm, and what was found on the way; of a shape that
-/// moves, at `t`.
+/// The field of a placed shape.
+pub(super) struct Exact {
+    pub field: Shared,
+    /// What was found on the way.
+    pub notes: Vec<String>,
+    /// Whether something of a mesh was too thin and was made thicker.
+    pub thickened: bool,
+}
+
+impl Exact {
+    fn new(field: Shared, notes: Vec<String>) -> Self {
+        Self { field, notes, thickened: false }
+    }
+}
+
+/// The field of a placed shape for cells of `step` mm; of a shape that moves, at `t`.
 pub(super) fn exact(
     placed: Placed,
     entry: &ShapeEntry,
     t: f64,
     step: f64,
     job: &dyn Job,
-) -> Result<(Shared, Vec<String>), Stop> {
+) -> Result<Exact, Stop> {
     match placed.body {
         Body::Surface(skinned) => {
             let (field, sides) = skinned.field(t, step, job).map_err(|e| match e {
@@ -215,13 +233,14 @@ pub(super) fn exact(
                 e => Problem::new(join("shapes", &placed.name), e.to_string()).into(),
             })?;
             let told = [Some(sides.story()), skinned.too_thin(step)].into_iter().flatten();
-            Ok((field, told.map(|n| format!("{}: {n}", placed.name)).collect()))
+            let notes = told.map(|n| format!("{}: {n}", placed.name)).collect();
+            Ok(Exact::new(field, notes))
         }
         Body::Solid(parts) => {
             let at = join("shapes", &placed.name);
             let parts: Vec<_> = parts.into_iter().map(|p| p.part).collect();
             let solid = Assembly::new(&parts).map_err(|e| Problem::new(at, e.to_string()))?;
-            Ok((Arc::new(solid), Vec::new()))
+            Ok(Exact::new(Arc::new(solid), Vec::new()))
         }
         Body::Mesh(mesh) => {
             let at = join("shapes", &placed.name);
@@ -229,11 +248,48 @@ pub(super) fn exact(
                 MeshFieldError::Cancelled(c) => Stop::Cancelled(c),
                 other => Stop::Problem(Problem::new(at, other.to_string())),
             };
-            let (field, report) = MeshField::new(&mesh, &options(entry), job).map_err(fail)?;
-            let notes = report.summary().into_iter().map(|n| format!("{}: {n}", placed.name));
-            Ok((Arc::new(field), notes.collect()))
+            let mut made = mesh_field(&mesh, entry, job).map_err(fail)?;
+            made.notes.iter_mut().for_each(|n| *n = format!("{}: {n}", placed.name));
+            Ok(made)
         }
     }
+}
+
+/// The field of a mesh with what is thin made as thick as its entry says, and what was found.
+fn mesh_field(mesh: &TriMesh, entry: &ShapeEntry, job: &dyn Job) -> Result<Exact, MeshFieldError> {
+    let mut options = options(entry);
+    let thin = entry.thicken.as_ref().map(ThickenEntry::of);
+    let thin = thin.filter(|t| t.which == ThickenWhich::Thin && entry.sign == SignEntry::Winding);
+    if thin.is_some() {
+        options.thicken = None;
+    }
+    let (field, report) = match (MeshField::new(mesh, &options, job), thin) {
+        // nothing but sheets
+        (Err(MeshFieldError::NoInside { .. }), Some(t)) => {
+            options.thicken = Some(Thicken { mm: t.mm, which: Which::Open });
+            MeshField::new(mesh, &options, job)?
+        }
+        (made, _) => made?,
+    };
+    let mut notes = report.summary();
+    let field: Shared = Arc::new(field);
+    let Some(t) = thin.filter(|_| options.thicken.is_none()) else {
+        return Ok(Exact { field, notes, thickened: thin.is_some() });
+    };
+    let (field, changed) = thickened(field, mesh, t.mm, job)?;
+    // what was lost is there now
+    notes.retain(|n| changed.sheets <= 0.0 || !n.contains("is lost"));
+    let percent = |share: f64| format!("{:.1}% of the area", share * 100.0);
+    let both = [(changed.sheets, "without thickness"), (changed.walls, "of thinner walls")];
+    let said: Vec<_> = both
+        .iter()
+        .filter(|(share, _)| *share > 5e-4)
+        .map(|(share, what)| format!("{} {what}", percent(*share)))
+        .collect();
+    if !said.is_empty() {
+        notes.push(format!("made {} mm thick: {}", t.mm, said.join(", ")));
+    }
+    Ok(Exact { field, notes, thickened: !said.is_empty() })
 }
 
 /// A placed shape brought to life, and what was found on the way.
@@ -257,20 +313,32 @@ pub(super) fn make(
         let (field, volume) = first(&moving, &purpose.times, purpose.morphs, job)?;
         let seconds = [start.elapsed().as_secs_f64(), 0.0];
         let moving = Some(moving);
-        let shape =
-            LiveShape { name, field, volume, bounds, seconds, exact: None, surface, moving };
+        let shape = LiveShape {
+            name,
+            field,
+            volume,
+            bounds,
+            feet: Vec::new(),
+            seconds,
+            exact: None,
+            surface,
+            moving,
+        };
         return Ok((shape, notes));
     }
-    let (exact, notes) = exact(placed, entry, 0.5, step, job)?;
+    let Exact { field: exact, notes, .. } = exact(placed, entry, 0.5, step, job)?;
     let made = start.elapsed().as_secs_f64();
     let (field, volume) = if purpose.morphs || !purpose.alone {
         sampled(&*exact, step, job)?
     } else {
         (exact.clone(), f64::NAN)
     };
+    let feet = if purpose.morphs { parts::feet(&*field, job)? } else { Vec::new() };
+    let feet = feet.into_iter().map(|f| Foot { at: f.at, reach: f.reach }).collect();
     let seconds = [made, start.elapsed().as_secs_f64() - made];
     let exact = purpose.alone.then_some(exact);
-    let shape = LiveShape { name, field, volume, bounds, seconds, exact, surface, moving: None };
+    let shape =
+        LiveShape { name, field, volume, bounds, feet, seconds, exact, surface, moving: None };
     Ok((shape, notes))
 }
 
@@ -299,7 +367,8 @@ fn options(entry: &ShapeEntry) -> MeshOptions {
         let ThickenEntry { mm, which } = ThickenEntry::of(t);
         let which = match which {
             ThickenWhich::Open => Which::Open,
-            ThickenWhich::All => Which::All,
+            // sheets without a sign are thin all over
+            ThickenWhich::All | ThickenWhich::Thin => Which::All,
         };
         Thicken { mm, which }
     });

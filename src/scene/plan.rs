@@ -153,6 +153,8 @@ pub(super) fn plan(
         sharp: Weighting::Smooth { epsilon: 0.01 * tall, power: 4.0 },
         frames: frames(entry, &names, at)?,
         space_time: space_time(entry.space_time.as_ref(), names.len(), at)?,
+        cell: step,
+        feet: shapes.iter().map(|s| s.feet.clone()).collect(),
     })
 }
 
@@ -220,6 +222,7 @@ pub(super) fn function(asked: InnerEntry) -> Inner {
         InnerEntry::Auto => Inner::Auto,
         InnerEntry::Mean => Inner::Mean,
         InnerEntry::Merge => Inner::Merge,
+        InnerEntry::Union => Inner::Union,
     }
 }
 

@@ -8,7 +8,9 @@ use crate::grid::Lattice;
 use crate::job::Job;
 use crate::mesh::TriMesh;
 use crate::num::Aabb;
-use crate::recipe::{GridEntry, Problem, Recipe, ShapeEntry, Source, join};
+use crate::recipe::{
+    GridEntry, PlainOr, Problem, Recipe, ShapeEntry, Source, ThickenEntry, ThickenWhich, join,
+};
 use crate::surface::SurfaceError;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -87,6 +89,21 @@ impl Single {
         self.placed.area
     }
 
+    /// The same with what is thinner than `mm` made so thick, where the entry is a mesh and says nothing
+    /// of it.
+    pub(super) fn no_thinner(mut self, mm: f64) -> Self {
+        if self.entry.mesh.is_some() && self.entry.thicken.is_none() && mm > 0.0 {
+            let which = ThickenWhich::Thin;
+            self.entry.thicken = Some(PlainOr::Table(ThickenEntry { mm, which }));
+        }
+        self
+    }
+
+    /// Its entry.
+    pub(super) fn entry(&self) -> &ShapeEntry {
+        &self.entry
+    }
+
     /// What was assumed and found.
     pub fn notes(&self) -> &[String] {
         &self.placed.notes
@@ -115,6 +132,10 @@ impl Single {
     /// # Errors
     /// A mesh that encloses nothing; cancelled.
     pub fn field(self, job: &dyn Job) -> Result<(Shared, Vec<String>), SceneError> {
+        self.exact(job).map(|made| (made.field, made.notes))
+    }
+
+    pub(super) fn exact(self, job: &dyn Job) -> Result<live::Exact, SceneError> {
         let source = Source::unwritten();
         let (t, step) = (self.t, self.lattice.step);
         live::exact(self.placed, &self.entry, t, step, job).map_err(|stop| match stop {

@@ -1,5 +1,6 @@
 //! Shapes looked at before a recipe is written, and what was found as its entries.
 
+use super::draft::step;
 use super::{SceneError, Single};
 use crate::element::{Element, Shape};
 use crate::field::Shared;
@@ -28,31 +29,50 @@ pub struct Looked {
     pub notes: Vec<String>,
 }
 
+/// A member has to be this many cells thick, or it falls between samples where a hybrid makes it
+/// thinner.
+const CELLS: f64 = 2.0;
+/// Nothing is made thicker than this share of the longest side: coarse cells fatten nothing.
+const THICKEST: f64 = 0.02;
+
 /// Reads shapes, finds their parts and stands each in its pose; `beside` is the folder paths are
-/// relative to. The entries' own `turn_deg`, `move` and `place` are replaced.
+/// relative to, `grid` what hybrids of them are sampled on. The entries' own `turn_deg`, `move` and
+/// `place` are replaced. Meshes whose entries say nothing of it are thickened where they are too thin
+/// for the grid; their entries say so then.
 ///
 /// # Errors
 /// What is wrong with an entry or a file; cancelled.
 pub fn look(
     shapes: Vec<(String, ShapeEntry)>,
     beside: &Path,
+    grid: &GridEntry,
     job: &dyn Job,
 ) -> Result<Looked, SceneError> {
     let (mut fields, mut shells, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut stood, mut notes) = (Vec::new(), Vec::new());
+    let (mut stood, mut notes, mut read) = (Vec::new(), Vec::new(), Vec::new());
     for (name, entry) in shapes {
         check(job)?;
         job.stage(&format!("read {name}"));
         let kept = PlainOr::Plain(Place::Keep);
         let entry = ShapeEntry { turn_deg: 0.0, shift: [0.0; 3], place: kept, ..entry };
-        let single = Single::open(&name, entry.clone(), &GridEntry::default(), beside)?;
-        notes.extend(single.notes().iter().cloned());
+        let single = Single::open(&name, entry, &GridEntry::default(), beside)?;
         boxes.push(single.bounds());
+        read.push((name, single));
+    }
+    let longest = boxes.iter().map(|b| b.size().max_element()).fold(0.0, f64::max);
+    let thick = round((CELLS * step(grid, longest)).min(THICKEST * longest), 0.001);
+    for (name, single) in read {
+        check(job)?;
+        job.stage(&format!("read {name}"));
+        notes.extend(single.notes().iter().cloned());
         shells.push(single.shells()?);
-        let (field, found) = single.field(job)?;
-        notes.extend(found);
-        fields.push(field);
-        stood.push((name, entry));
+        let plain = single.entry().clone();
+        let single = single.no_thinner(thick);
+        let thin = single.entry().clone();
+        let made = single.exact(job)?;
+        notes.extend(made.notes);
+        fields.push(made.field);
+        stood.push((name, if made.thickened { thin } else { plain }));
     }
     job.stage("parts");
     let named: Vec<_> =
@@ -80,6 +100,11 @@ pub fn features(suggestion: &Suggestion) -> Vec<FeatureEntry> {
 pub fn place(entry: &mut ShapeEntry, pose: &Pose, bounds: &Aabb) {
     if pose.scale != 1.0 {
         entry.height = Some(round(bounds.size().z * pose.scale, 0.01));
+    }
+    if pose.scale != 1.0
+        && let Some(PlainOr::Table(t)) = &mut entry.thicken
+    {
+        t.mm = round(t.mm * pose.scale, 0.001);
     }
     entry.turn_deg = round(pose.turn.to_degrees(), 0.01);
     entry.place = PlainOr::Plain(Place::Keep);

@@ -6,7 +6,7 @@ use super::{pair, plan};
 use crate::element::Element;
 use crate::field::Shared;
 use crate::job::{Job, Quiet};
-use crate::morph::{Course, Frames, Moment, Morph, MorphError, Plan, build};
+use crate::morph::{self, Course, Foot, Frames, Moment, Morph, MorphError, Plan, build};
 use crate::num::Aabb;
 use crate::recipe::{MethodEntry, MorphEntry, Problem, Recipe};
 use std::collections::BTreeMap;
@@ -127,6 +127,14 @@ impl Variant {
             plan.frames = Frames::Of(heaviest(&plan, t));
         }
         build(plan)
+    }
+
+    /// Where its shapes' feet should stand at `t`; none where that is not known.
+    pub fn feet(&self, t: f64) -> Vec<Foot> {
+        match &self.way {
+            Way::Plan { plan, dominant: false, .. } => morph::feet(plan, t).unwrap_or_default(),
+            _ => Vec::new(),
+        }
     }
 
     /// A box that holds its results at all its times, mm.

@@ -93,3 +93,83 @@ fn a_group_with_all_weight_on_one_chair_is_that_chair() {
     let (auto, panel) = (volume(&[], "g.stl"), volume(&["--method", "linear"], "p.stl"));
     assert!((auto / panel - 1.0).abs() < 1e-3, "{auto} {panel}");
 }
+
+/// A chair as a mesh: four legs and a back of boxes, and a seat that is a sheet.
+fn sheet_chair() -> String {
+    let mut text = String::new();
+    let mut count = 0;
+    let mut put = |corners: &[[f64; 3]], faces: &[&[usize]]| {
+        for [x, y, z] in corners {
+            text.push_str(&format!("v {x} {z} {}\n", -y));
+        }
+        for f in faces {
+            let face: Vec<String> = f.iter().map(|i| (count + i + 1).to_string()).collect();
+            text.push_str(&format!("f {}\n", face.join(" ")));
+        }
+        count += corners.len();
+    };
+    let mut block = |[x0, y0, z0]: [f64; 3], [x1, y1, z1]: [f64; 3]| {
+        let at = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+        let corners: Vec<[f64; 3]> =
+            [z0, z1].iter().flat_map(|z| at.map(|[x, y]| [x, y, *z])).collect();
+        let sides: [&[usize]; 6] = [
+            &[3, 2, 1, 0],
+            &[4, 5, 6, 7],
+            &[0, 1, 5, 4],
+            &[1, 2, 6, 5],
+            &[2, 3, 7, 6],
+            &[3, 0, 4, 7],
+        ];
+        put(&corners, &sides);
+    };
+    for (x, y) in [(-200.0, -200.0), (170.0, -200.0), (-200.0, 170.0), (170.0, 170.0)] {
+        block([x, y, 0.0], [x + 30.0, y + 30.0, 450.0]);
+    }
+    block([-200.0, 175.0, 450.0], [200.0, 200.0, 900.0]);
+    put(
+        &[
+            [-210.0, -210.0, 450.0],
+            [210.0, -210.0, 450.0],
+            [210.0, 210.0, 450.0],
+            [-210.0, 210.0, 450.0],
+        ],
+        &[&[0, 1, 2, 3]],
+    );
+    text
+}
+
+#[test]
+fn a_seat_without_thickness_gets_one_and_the_recipe_says_so() {
+    let folder = chairs();
+    folder.put("sheet.obj", &sheet_chair());
+    let args = ["morph", "sheet.obj", "panel.toml", "--resolution", "64", "-o", "h.stl"];
+    let said = folder.run(&args).ends(0).stderr();
+    // two of 14 mm cells are more than a fiftieth of 900 mm
+    assert!(said.contains("made 18 mm thick") && said.contains("without thickness"), "{said}");
+    assert!(said.contains("8 of 8 feet on the floor"), "{said}");
+    let recipe = fs::read_to_string(folder.join("h.toml")).unwrap();
+    assert!(recipe.contains("which = \"thin\"") && recipe.contains("crumbs = 0.005"), "{recipe}");
+    let frame = json(&folder, "h.run.json")["frames"][0].clone();
+    assert_eq!(frame["pieces"], 1, "{frame}");
+    folder.run(&["run", "h.toml", "-o", "again"]).ends(0);
+    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert_eq!(bytes("h.stl"), bytes("again/h.stl"));
+    // other methods leave the mesh as it is
+    let said = folder
+        .run(&[
+            "morph",
+            "sheet.obj",
+            "panel.toml",
+            "--method",
+            "linear",
+            "--resolution",
+            "48",
+            "--align",
+            "pose",
+            "-o",
+            "l.stl",
+        ])
+        .ends(0)
+        .stderr();
+    assert!(said.contains("no thickness and is lost"), "{said}");
+}

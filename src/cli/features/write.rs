@@ -7,6 +7,9 @@ use fieldgraft::scene::suggest;
 use std::fmt::Write;
 use std::path::{Component, Path, PathBuf};
 
+/// The grid of suggested recipes.
+pub(super) const RESOLUTION: u32 = 128;
+
 /// A complete recipe; `path` is where it will stand.
 pub(super) fn recipe(
     path: &Path,
@@ -21,7 +24,7 @@ pub(super) fn recipe(
         "# Suggested by `fieldgraft features suggest`: look at the elements, then edit what is wrong.\n\
          # Millimetres, z up; fronts look to -y, left is -x, floors are at z = 0. The elements fit the\n\
          # shapes as they stand here: for other sizes suggest again, with --height.\n\
-         version = 1\nname = {}\n\n[grid]\nresolution = 128",
+         version = 1\nname = {}\n\n[grid]\nresolution = {RESOLUTION}",
         quoted(&names.join(" x "))
     );
     for ((name, entry), guess) in shapes.iter().zip(&suggestion.shapes) {
@@ -78,9 +81,13 @@ fn key(name: &str) -> String {
 }
 
 fn shape(entry: &ShapeEntry) -> Result<String, Failure> {
-    toml::to_string(entry)
-        .map(|t| t.trim_end().to_owned())
-        .map_err(|e| Failure::new(Failure::FAILED, format!("recipe: {e}")))
+    let fail = |e: toml::ser::Error| Failure::new(Failure::FAILED, format!("recipe: {e}"));
+    let mut entry = entry.clone();
+    // a table in one line: more keys may follow
+    let thicken = entry.thicken.take().map(toml::Value::try_from).transpose().map_err(fail)?;
+    let text = toml::to_string(&entry).map_err(fail)?;
+    let line = thicken.map_or_else(String::new, |t| format!("thicken = {t}"));
+    Ok(format!("{}\n{line}", text.trim_end()).trim_end().to_owned())
 }
 
 fn comment(note: &Note, sure: f64, names: &[&str]) -> String {
@@ -90,7 +97,7 @@ fn comment(note: &Note, sure: f64, names: &[&str]) -> String {
             let of: Vec<&str> = at.iter().filter_map(|&i| names.get(i).copied()).collect();
             format!("none on {}: its element there is where one would be", of.join(" and "))
         }
-        Note::Bundle => "slices and spokes of a column stand for legs".to_owned(),
+        Note::Whole => "the bases are of different kinds: one element round all of each".to_owned(),
         Note::Mixed => "different numbers of legs: one may stand for two".to_owned(),
         Note::Slab => "no part: a slab of the whole".to_owned(),
     };

@@ -51,7 +51,7 @@ pub struct Outlook {
     pub largest: f64,
     /// Volume over the weighted mean of the shapes' volumes.
     pub volume: f64,
-    /// Features that should reach the floor and do not.
+    /// Feet that should stand on the floor and do not.
     pub lame: usize,
 }
 
@@ -71,7 +71,9 @@ const CELLS: f64 = 80.0;
 /// Times at which a pair is tried.
 const TIMES: [f64; 3] = [0.25, 0.5, 0.75];
 /// Share of the largest piece from which on the rest is crumbs.
-const WHOLE: f64 = 0.985;
+const WHOLE: f64 = 0.995;
+/// Volumes over the mean volume that need no other choice.
+const FINE_VOLUME: std::ops::Range<f64> = 0.8..1.3;
 /// Natural logarithm of the volume ratio that costs nothing.
 const FREE_RATIO: f64 = 0.1;
 
@@ -96,19 +98,30 @@ pub fn tune(
     for stage in &mut stages {
         stage.measure(&kins, plan, volumes, job)?;
     }
-    let candidates = options::candidates(&kins);
-    let judged = candidates
-        .par_iter()
-        .map(|c| {
-            job::check(job)?;
-            let outlook: Vec<_> = stages.iter().map(|s| s.judge(&kins, c)).collect();
-            Ok((cost(&outlook) + options::bias(&kins, c), outlook))
-        })
-        .collect::<Result<Vec<_>, Cancelled>>()?;
+    let mut candidates = options::candidates(&kins);
+    let judge = |c: &Vec<usize>| {
+        job::check(job)?;
+        let outlook: Vec<_> = stages.par_iter().map(|s| s.judge(&kins, c)).collect();
+        Ok((cost(&outlook) + options::bias(&kins, c), outlook))
+    };
+    let first = candidates.first().map(judge).transpose()?;
+    if first.as_ref().is_some_and(|(_, outlook)| outlook.iter().all(Outlook::fine)) {
+        // the preferred combination has nothing wrong with it
+        candidates.truncate(1);
+    }
+    let others = candidates.par_iter().skip(1).map(judge).collect::<Result<Vec<_>, Cancelled>>()?;
+    let judged: Vec<_> = first.into_iter().chain(others).collect();
     let best = judged.iter().enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0));
     let (best, outlook) = best.map_or((0, Vec::new()), |(i, (_, o))| (i, o.clone()));
     let choices = candidates.get(best).map_or_else(Vec::new, |c| chosen(plan, &kins, c));
     Ok(Tuning { choices, outlook, tried: candidates.len() })
+}
+
+impl Outlook {
+    /// Whether it is one standing piece of about the mean volume.
+    fn fine(&self) -> bool {
+        self.largest >= WHOLE && self.lame == 0 && FINE_VOLUME.contains(&self.volume)
+    }
 }
 
 /// How far a hybrid is from one standing piece of the mean volume.

@@ -27,7 +27,7 @@ const TOO_FAR: f64 = 0.35;
 /// What each step from the preferred option costs.
 const STEP: f64 = 0.02;
 /// Most combinations that are tried.
-const MOST: usize = 400;
+const MOST: usize = 20;
 
 /// Words that tell features of one kind apart.
 const SIDES: [&str; 6] = ["left", "right", "front", "back", "rear", "middle"];
@@ -81,19 +81,13 @@ fn options(
         (Style::Erode, _) => vec![Choice { inner: None, course: None }],
         (Style::Grow, _) => vec![plain(Inner::Grow)],
         (Style::Average, Some(Course::Fixed(row))) if heirs(row) > 2 => {
-            let mut all = vec![];
-            if apart < TOO_FAR {
-                all.push(plain(Inner::Mean));
-            }
-            all.extend(few(row, n).into_iter().map(|c| merged(Some(c))));
-            if apart >= TOO_FAR {
-                all.push(plain(Inner::Mean));
-            }
-            all
+            // the mean of many leaves crossings and islands where they lie apart
+            let mean = (apart < TOO_FAR).then(|| plain(Inner::Mean));
+            few(row, n).into_iter().map(|c| merged(Some(c))).chain(mean).collect()
         }
         // the mean loses thin legs and backs of another make, which coarse samples do not tell; merged
         // parts keep them (chair2 x thonet: 2 pieces without arms against one with them)
-        (Style::Average, _) => vec![merged(None)],
+        (Style::Average, _) => vec![merged(None), plain(Inner::Union)],
         (Style::Swap, Some(Course::Fixed(row))) => {
             few(row, n).into_iter().filter(alone).map(|c| merged(Some(c))).collect()
         }

@@ -4,10 +4,10 @@ use super::Outlook;
 use super::options::Kin;
 use crate::job::{self, Cancelled, Job};
 use crate::morph::Morph;
-use crate::morph::hybrid::{Hybrid, Looked};
+use crate::morph::hybrid::{Hybrid, Looked, Placed};
 use crate::morph::inner::{Local, Mix};
-use crate::morph::measure::{self, Measured};
-use crate::morph::metamorphosis::Metamorphosis;
+use crate::morph::measure::{self, Measured, Site};
+use crate::morph::metamorphosis::{Metamorphosis, Step, leads};
 use crate::morph::plan::{Inner, Plan};
 use crate::num::Aabb;
 use glam::{DVec3, UVec3};
@@ -32,15 +32,19 @@ pub(super) struct Stage {
     measured: Vec<Vec<(Vec<f64>, Measured)>>,
     /// The mean volume, mm³, by option of each kind: that of the plan's weights.
     mean: f64,
+    /// Where the shapes' feet go.
+    feet: Vec<Step>,
+    /// Side of the result's cells, mm.
+    cell: f64,
 }
 
 /// Values beyond which nothing reaches, mm: the largest level, and what shares thicken.
 const NEAR: f64 = 26.0;
 /// Samples this far outside, in cells, still connect: a member thinner than a cell falls between
 /// samples on its way.
-const SLACK: f64 = 0.3;
-/// A foot ends within this share of the height from the lowest point.
-const FOOT: f64 = 0.05;
+const SLACK: f64 = 0.15;
+/// A foot ends within this share of the height from the lowest point, and as near to where it should.
+const FOOT: f64 = 0.03;
 
 impl Stage {
     /// Looks the shapes up, with this many cells along the longest side.
@@ -82,15 +86,25 @@ impl Stage {
             sharp.extend(c);
         }
         let (low, measured) = (domain.min, Vec::new());
-        Ok(Self { t, hybrid, step, low, size, at, g, sharp, rows, measured, mean: 0.0 })
+        let (feet, cell) = (morph.steps(t), morph.plan.cell);
+        let mean = 0.0;
+        Ok(Self { t, hybrid, step, low, size, at, g, sharp, rows, measured, mean, feet, cell })
+    }
+
+    /// The samples of a feature.
+    fn site<'a>(&self, f: &Placed, g: &'a [f64], sizes: &'a [f64]) -> Site<'a> {
+        Site { g, sizes, step: Some(measure::step(f)), cell: self.cell }
     }
 
     /// How far apart the shapes are in these features: 0 overlap, 1 do not.
     pub fn apart(&self, features: &[usize]) -> f64 {
         let one = |&i: &usize| {
-            let f = self.hybrid.features.get(i)?;
-            let rows = self.rows.get(i)?;
-            Some(measure::measured(rows, &f.lam, &measure::sizes(f), Inner::Auto).local.apart)
+            let (f, g) = (self.hybrid.features.get(i)?, self.rows.get(i)?);
+            Some(
+                measure::measured(&self.site(f, g, &measure::sizes(f)), &f.lam, Inner::Auto)
+                    .local
+                    .apart,
+            )
         };
         let all: Vec<f64> = features.iter().filter_map(one).collect();
         all.iter().sum::<f64>() / all.len().max(1) as f64
@@ -111,11 +125,13 @@ impl Stage {
             .map(|i| {
                 job::check(job)?;
                 let (f, rows) = (&features[i], &self.rows[i]);
+                let sizes = measure::sizes(f);
+                let site = self.site(f, rows, &sizes);
                 let options = kin_of(i).map_or(&[][..], |k| k.options.as_slice());
                 let each = options.iter().map(|o| {
                     let lam = o.course.as_ref().map_or_else(|| f.lam.clone(), |c| c.at(self.t));
                     let inner = o.inner.unwrap_or(plan.inner);
-                    let m = measure::measured(rows, &lam, &measure::sizes(f), inner);
+                    let m = measure::measured(&site, &lam, inner);
                     (lam, m)
                 });
                 Ok(each.collect())
@@ -127,7 +143,8 @@ impl Stage {
 
     /// What a combination of options looks like.
     pub fn judge(&self, kins: &[Kin], candidate: &[usize]) -> Outlook {
-        let f = self.values(&self.setting(kins, candidate));
+        let setting = self.setting(kins, candidate);
+        let f = self.values(&setting);
         let slack = SLACK * self.step;
         let solid: Vec<bool> = f.iter().map(|&v| v < slack).collect();
         let label = self.label(&solid);
@@ -137,13 +154,15 @@ impl Stage {
             volumes[l as usize] += part(v);
         }
         let whole: f64 = volumes.iter().sum();
+        // the share of samples outside is the skin of all pieces
+        let pieces: f64 = volumes.iter().skip(1).sum();
         let largest = volumes.iter().skip(1).copied().fold(0.0, f64::max);
         let main = (1..volumes.len()).max_by(|&a, &b| volumes[a].total_cmp(&volumes[b]));
         Outlook {
             t: self.t,
-            largest: if whole > 0.0 { largest / whole } else { 0.0 },
+            largest: if pieces > 0.0 { largest / pieces } else { 0.0 },
             volume: if self.mean > 0.0 { whole * self.step.powi(3) / self.mean } else { 1.0 },
-            lame: self.lame(&label, main.unwrap_or(0) as u32),
+            lame: self.lame(&setting, &label, main.unwrap_or(0) as u32),
         }
     }
 
@@ -237,23 +256,19 @@ impl Stage {
         label
     }
 
-    /// Features whose element stands on the floor although the main piece does not reach it there.
-    fn lame(&self, label: &[u32], main: u32) -> usize {
+    /// Feet that should stand on the floor although the main piece does not reach it there.
+    fn lame(&self, set: &[&(Vec<f64>, Measured)], label: &[u32], main: u32) -> usize {
         let held = |r: &usize| label[*r] == main && main > 0;
         let held: Vec<DVec3> = (0..label.len()).filter(held).map(|r| self.point(r)).collect();
         let bounds = Aabb::of(held.iter().copied());
-        if bounds.is_empty() {
-            return self.hybrid.features.len();
-        }
-        let reach = FOOT * bounds.size().z + self.step;
-        let boxes = self.hybrid.features.iter().map(|f| f.element.bounds());
-        let floor = boxes.clone().fold(f64::INFINITY, |z, b| z.min(b.min.z));
-        let feet = boxes.filter(|b| b.min.z < floor + reach);
-        let stands = |b: &Aabb| {
-            let b = b.grow(reach);
-            held.iter().any(|p| p.z < bounds.min.z + reach && b.contains(*p))
+        let low = bounds.min.z + FOOT * bounds.size().z + self.step;
+        let floor: Vec<DVec3> = held.into_iter().filter(|p| p.z < low).collect();
+        let wanted = |s: &&Step| set.get(s.feature).is_some_and(|(lam, _)| leads(lam, s.shape));
+        let stands = |s: &Step| {
+            let reach = s.foot.reach + FOOT * bounds.size().z + self.step;
+            floor.iter().any(|p| p.truncate().distance(s.foot.at.truncate()) <= reach)
         };
-        feet.filter(|b| !stands(b)).count()
+        self.feet.iter().filter(wanted).filter(|s| !stands(s)).count()
     }
 }
 
