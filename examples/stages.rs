@@ -47,7 +47,9 @@ fn everywhere(field: &dyn Field, lattice: &Lattice) -> f64 {
         let at = [b % blocks[0], b / blocks[0] % blocks[1], b / (blocks[0] * blocks[1])];
         let [x, y, z] = at.map(|i| 8 * i);
         let points: Vec<DVec3> = (z..nz.min(z + 8))
-            .flat_map(|k| (y..ny.min(y + 8)).flat_map(move |j| (x..nx.min(x + 8)).map(move |i| [i, j, k])))
+            .flat_map(|k| {
+                (y..ny.min(y + 8)).flat_map(move |j| (x..nx.min(x + 8)).map(move |i| [i, j, k]))
+            })
             .map(|c| lattice.bounds().min + DVec3::from(c.map(f64::from)) * lattice.step)
             .collect();
         let mut out = vec![0.0; points.len()];
@@ -85,7 +87,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = extract(&samples.bricks, Mesher::Cone, &Quiet)?;
     let extract_s = lap();
     let peak = peak_memory().unwrap_or(0);
-    let all_s = rest.contains(&"--all".to_owned()).then(|| (everywhere(&*field, &lattice), lap()).1);
+    let all_s =
+        rest.contains(&"--all".to_owned()).then(|| (everywhere(&*field, &lattice), lap()).1);
     let all_s = all_s.map_or("null".to_owned(), |s| s.to_string());
     println!(
         "{{\"read\": {read_s}, \"field\": {field_s}, \"sample\": {sample_s}, \"extract\": {extract_s}, \
