@@ -82,11 +82,13 @@ fn styles_are_words_of_auto() {
 #[test]
 fn a_group_with_all_weight_on_one_chair_is_that_chair() {
     let folder = chairs();
-    let args = ["morph", "windsor.toml", "panel.toml", "windsor.toml", "--resolution", "48"];
+    let args = ["morph", "windsor.toml", "panel.toml", "windsor.toml", "--resolution", "96"];
     let volume = |more: &[&str], out: &str| {
         folder.run(&[&args[..], &["--weights", "0,1,0", "-o", out], more].concat()).ends(0);
         let frame = json(&folder, &out.replace(".stl", ".run.json"))["frames"][0].clone();
         assert_eq!(frame["pieces"], 1);
+        let kept = frame["volume_kept"].as_f64().unwrap();
+        assert!((kept - 1.0).abs() < 0.02, "{kept}");
         frame["health"]["volume_mm3"].as_f64().unwrap()
     };
     // the weighted mean of the fields is the panel chair itself, on the same grid
