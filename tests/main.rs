@@ -6,6 +6,9 @@ mod chairs;
 mod cli;
 /// A module imports from lower floors only.
 mod floors;
+/// Files made to do harm, given to the built command.
+#[cfg(target_os = "linux")]
+mod hostile;
 /// Morphs of our own chairs with their features.
 mod morph;
 /// Parametric surfaces together with the rest.

@@ -1,7 +1,7 @@
 //! Progress on stderr, messages, and being interrupted.
 
 use super::Common;
-use super::failure::Failure;
+use super::failure::{Failure, plain};
 use fieldgraft::job::Job;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -77,7 +77,7 @@ impl Watch {
 
 fn tell(message: &str) {
     // nowhere is left to complain to if stderr is gone
-    let _ = writeln!(std::io::stderr(), "{message}");
+    let _ = writeln!(std::io::stderr(), "{}", plain(message));
 }
 
 /// Data to stdout; a reader that went away ends the program without a word.
