@@ -51,19 +51,24 @@ impl Bvh {
     }
 }
 
-/// Whether a ray enters a box before `best`. Axes along which the ray does not move give
-/// infinities, and NaN on a side's plane, which `min` and `max` drop: such boxes are kept.
+/// Whether a ray enters a box before `best`.
 fn meets(b: &Aabb, from: DVec3, inverse: DVec3, best: f64) -> bool {
     let (mut enter, mut leave) = (0.0f64, best);
     for axis in 0..3 {
+        if inverse[axis].is_infinite() {
+            // beside the slab that it runs along, or in it all the way
+            if from[axis] < b.min[axis] || from[axis] > b.max[axis] {
+                return false;
+            }
+            continue;
+        }
         let a = (b.min[axis] - from[axis]) * inverse[axis];
         let b = (b.max[axis] - from[axis]) * inverse[axis];
         enter = enter.max(a.min(b));
         leave = leave.min(a.max(b));
     }
-    // as much as the products may be rounded; a ray beside a slab that it runs along enters at
-    // infinity
-    enter.is_finite() && enter * (1.0 - 1e-12) <= leave
+    // as much as the products may be rounded
+    enter * (1.0 - 1e-12) <= leave
 }
 
 /// Distance to a triangle met from behind, sides included, and its normal (Möller and Trumbore

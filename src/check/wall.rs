@@ -26,11 +26,14 @@ const MOST: usize = 2_000_000;
 /// A wall has as much area as so many average triangles. Fewer would take the tip of a feature that
 /// ends between two samples for a wall; more would miss a neck as wide and long as two cells.
 const PATCH: f64 = 16.0;
-/// Corners whose normals are within this cosine of a large triangle's own (35°) share a smooth
-/// surface with it; others stand at an edge.
+/// Corners whose triangles are all within this cosine of their normal (35°) lie on a smooth surface;
+/// others stand at an edge.
 const SMOOTH: f64 = 0.82;
 /// The first rays go from every so many triangles: they find a wall that the thinnest is not above.
 const FIRST: usize = 16;
+/// Seen from the other side a wall counts as the same one up to this much thicker: what a normal
+/// that leans by 20° hides of a rod.
+const SAME: f64 = 1.1;
 /// A wall is no thinner than this share of the way along the normal: where the sides lean by 60°,
 /// 1 - tan²(30°) = 2/3.
 const LEAST_SHARE: f64 = 0.66;
@@ -39,7 +42,7 @@ const LEAST_SHARE: f64 = 0.66;
 /// an opposite side. Meaningful for closed meshes. A ray a point: about as long as the check.
 ///
 /// Exact up to rounding for plane-parallel plates, and up to the mesh's own sagitta for rods, tubes
-/// and balls; where both normals are off by 10°, as on rough spots, a rod comes out 5% too thin. Flat
+/// and balls; where the normals of both sides are off by 10°, as on rough spots, a rod comes out 2% too thin. Flat
 /// faces are measured every 64th of the box's diagonal: a spot that is thin over less than that
 /// may be missed on large triangles. On a mesh sampled with a step `h` a
 /// sharp edge is bevelled, and the wall between two bevels is up to 2.5 `h` thinner than that
@@ -113,6 +116,7 @@ impl Points {
     fn of(mesh: &TriMesh) -> Self {
         let longest = mesh.bounds().size().length() * FINEST;
         let normals = smooth(mesh);
+        let round = round(mesh, &normals);
         let at = mesh.points.iter().zip(&normals).map(|(&at, &normal)| Point { at, normal });
         let mut all = Self { at: at.collect(), triangles: Vec::new(), normals: Vec::new() };
         for (i, f) in mesh.faces.iter().enumerate() {
@@ -129,19 +133,21 @@ impl Points {
             if small {
                 all.triangles.push(*f);
             } else if all.at.len() < MOST {
-                all.divide([a, b, c], f.map(|v| normals[v as usize]), parts.min(1000.0) as u32);
+                let corners = f.map(|v| normals[v as usize]);
+                let round = f.iter().all(|&v| round[v as usize]);
+                all.divide([a, b, c], round.then_some(corners), parts.min(1000.0) as u32);
             }
         }
         all
     }
 
-    /// Points in rows over a triangle, moved a little inwards from its sides.
-    fn divide(&mut self, [a, b, c]: [DVec3; 3], corners: [DVec3; 3], parts: u32) {
+    /// Points in rows over a triangle, moved a little inwards from its sides; with the normals between
+    /// its corners', or else its own.
+    fn divide(&mut self, [a, b, c]: [DVec3; 3], corners: Option<[DVec3; 3]>, parts: u32) {
         let Some(normal) = (b - a).cross(c - a).try_normalize() else {
             return;
         };
-        let round = corners.iter().all(|n| n.dot(normal) > SMOOTH);
-        let [na, nb, nc] = if round { corners } else { [normal; 3] };
+        let [na, nb, nc] = corners.unwrap_or([normal; 3]);
         let first = self.at.len() as u32;
         let row = |i: u32| first + i * (2 * parts + 3 - i) / 2;
         let middle = (a + b + c) / 3.0;
@@ -166,16 +172,29 @@ impl Points {
 
     /// Thickness at a point; infinite where there is no opposite side within the range.
     fn wall(&self, shell: &Shell, v: u32, range: [f64; 2]) -> f64 {
-        let p = &self.at[v as usize];
-        let Some(exit) = shell.bvh().first_exit(p.at, -p.normal, range) else {
+        let p = self.at[v as usize];
+        let Some((there, opposite)) = self.across(shell, p, range) else {
             return f64::INFINITY;
         };
+        // a normal that leans, as on a bevelled edge, sees a round wall too thin: the opposite side
+        // has its own view
+        match self.across(shell, opposite, range) {
+            Some((back, _)) if back < there * SAME => there.max(back),
+            _ => there,
+        }
+    }
+
+    /// Thickness as one point sees it, infinite where the other side leans too much, and where that is.
+    fn across(&self, shell: &Shell, p: Point, range: [f64; 2]) -> Option<(f64, Point)> {
+        let exit = shell.bvh().first_exit(p.at, -p.normal, range)?;
+        let smooth = self.normals[exit.face as usize];
         // a smooth normal leans near an edge, a small triangle's own on a rough spot
-        let cos = [self.normals[exit.face as usize], exit.normal].map(|n| -n.dot(p.normal));
+        let cos = [smooth, exit.normal].map(|n| -n.dot(p.normal));
         let cos = cos[0].max(cos[1]);
         // tan² of half the angle
         let lean = ((1.0 - cos) / (1.0 + cos)).max(0.0);
-        if cos > OPPOSITE { exit.distance * (1.0 - lean) } else { f64::INFINITY }
+        let wall = if cos > OPPOSITE { exit.distance * (1.0 - lean) } else { f64::INFINITY };
+        Some((wall, Point { at: p.at - p.normal * exit.distance, normal: smooth }))
     }
 
     /// The middle one of a triangle's corners' values, and its area.
@@ -205,4 +224,16 @@ fn smooth(mesh: &TriMesh) -> Vec<DVec3> {
     let plain = gather(&|i, _| mesh.area_vector(i));
     let wide = gather(&|_, f| f.iter().map(|&v| plain[v as usize]).sum());
     wide.iter().map(|n| n.normalize_or_zero()).collect()
+}
+
+/// Whether all triangles round a point lie about as its normal says.
+fn round(mesh: &TriMesh, normals: &[DVec3]) -> Vec<bool> {
+    let mut round = vec![true; mesh.points.len()];
+    for (i, f) in mesh.faces.iter().enumerate() {
+        let own = mesh.area_vector(i).normalize_or_zero();
+        for &v in f {
+            round[v as usize] &= own.dot(normals[v as usize]) > SMOOTH;
+        }
+    }
+    round
 }

@@ -131,6 +131,8 @@ impl Compare {
             shapes: scene.shapes.iter().map(ShapeReport::of).collect(),
             says,
             notes: scene.notes.clone(),
+            searches: scene.searches.clone(),
+            times: when,
             seconds_shapes: seconds,
             seconds_total: seconds,
             ..Comparison::default()

@@ -1,7 +1,10 @@
 //! Convolution with a Gaussian axis by axis, over the whole length of each axis: mass must feel what
-//! is far, where the Gaussian is tiny but not zero, so it is neither cut off nor done by FFT.
+//! is far, where the Gaussian is tiny but not zero, so it is neither cut off nor done by FFT. Along
+//! an axis it is a product with a symmetric matrix.
 
 use crate::job::{Cancelled, Job, check};
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, Slice};
 use rayon::prelude::*;
 
 /// Least factor of a kernel: it reaches 15 √γ far along an axis.
@@ -13,6 +16,9 @@ const NOTHING: f64 = 1e-200;
 /// Samples that one thread takes at least: handing out less costs more than it gains.
 pub(super) const SHARE: usize = 1 << 15;
 
+/// Columns of a product along z that are made at once.
+const COLUMNS: usize = 1024;
+
 /// `x`, or 0 where it is next to nothing.
 pub(super) fn flushed(x: f64) -> f64 {
     if x < NOTHING { 0.0 } else { x }
@@ -21,29 +27,33 @@ pub(super) fn flushed(x: f64) -> f64 {
 /// A Gaussian over a lattice, exp(-r² / γ), r in samples.
 pub(super) struct Gauss {
     size: [usize; 3],
-    /// By axis: the kernel at -(n - 1) ..= n - 1.
-    kernels: [Vec<f64>; 3],
+    /// By axis: the factors between all places along it.
+    kernels: [Array2<f64>; 3],
 }
 
 impl Gauss {
-    pub fn new(size: [u32; 3]) -> Self {
-        Self { size: size.map(|n| n as usize), kernels: [const { Vec::new() }; 3] }
-    }
-
-    /// Another width.
-    pub fn set(&mut self, gamma: f64) {
-        self.kernels = self.size.map(|n| {
-            let at = |i: usize| i as f64 - (n as f64 - 1.0);
-            let factor = |i: usize| (-at(i) * at(i) / gamma).exp();
-            (0..2 * n - 1).map(|i| if factor(i) < LEAST { 0.0 } else { factor(i) }).collect()
+    pub fn new(size: [u32; 3], gamma: f64) -> Self {
+        let size = size.map(|n| n as usize);
+        let kernels = size.map(|n| {
+            Array2::from_shape_fn((n, n), |(i, j)| {
+                let r = i.abs_diff(j) as f64;
+                let factor = (-r * r / gamma).exp();
+                if factor < LEAST { 0.0 } else { factor }
+            })
         });
+        Self { size, kernels }
     }
 
     /// Of samples that are zero along most rows.
     pub fn from(&self, mut data: Vec<f64>, job: &dyn Job) -> Result<Vec<f64>, Cancelled> {
         check(job)?;
-        let all = vec![true; self.size[1]];
-        self.planes(&mut data, |_| &all, [0, 1]);
+        self.planes(&mut data, |_, plane| {
+            let rows = indices(plane.rows().into_iter().map(|r| r.iter().any(|&v| v != 0.0)));
+            let along_x = flush(plane.select(Axis(0), &rows).dot(&self.kernels[0]));
+            // the matrix is symmetric: its rows are its columns
+            let spread = self.kernels[1].select(Axis(0), &rows);
+            plane.assign(&flush(spread.t().dot(&along_x)));
+        });
         check(job)?;
         Ok(self.across(&data))
     }
@@ -54,86 +64,54 @@ impl Gauss {
         let mut data = self.across(data);
         check(job)?;
         let y = self.size[1];
-        self.planes(&mut data, |k| &rows[k * y..(k + 1) * y], [1, 0]);
+        self.planes(&mut data, |k, plane| {
+            let rows = indices(rows[k * y..(k + 1) * y].iter().copied());
+            let along_y = flush(self.kernels[1].select(Axis(0), &rows).dot(plane));
+            let done = flush(along_y.dot(&self.kernels[0]));
+            rows.iter().zip(done.rows()).for_each(|(&j, row)| plane.row_mut(j).assign(&row));
+        });
         Ok(data)
     }
 
-    /// Along x (0) and y (1) in every plane, in that order.
-    fn planes<'a>(
-        &self,
-        data: &mut [f64],
-        rows: impl Fn(usize) -> &'a [bool] + Sync,
-        order: [usize; 2],
-    ) {
+    /// Every plane of one z.
+    fn planes(&self, data: &mut [f64], each: impl Fn(usize, &mut ArrayViewMut2<'_, f64>) + Sync) {
         let [x, y, _] = self.size;
-        let share = SHARE / (x * y) + 1;
-        data.par_chunks_exact_mut(x * y).with_min_len(share).enumerate().for_each(|(k, plane)| {
-            let rows = rows(k);
-            if !rows.contains(&true) {
-                return;
-            }
-            for axis in order {
-                match axis {
-                    0 => self.along_x(plane, rows),
-                    _ => self.along_y(plane, rows),
-                }
+        data.par_chunks_exact_mut(x * y).enumerate().for_each(|(k, plane)| {
+            if let Ok(mut plane) = ArrayViewMut2::from_shape((y, x), plane) {
+                each(k, &mut plane);
             }
         });
-    }
-
-    fn along_x(&self, plane: &mut [f64], rows: &[bool]) {
-        let x = self.size[0];
-        let mut out = vec![0.0; x];
-        for (row, _) in plane.chunks_exact_mut(x).zip(rows).filter(|(_, wanted)| **wanted) {
-            if row.iter().all(|&v| v == 0.0) {
-                continue;
-            }
-            out.fill(0.0);
-            for (i, &v) in row.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-                add(&mut out, v, &self.kernels[0][x - 1 - i..2 * x - 1 - i]);
-            }
-            row.iter_mut().zip(&out).for_each(|(to, &v)| *to = flushed(v));
-        }
-    }
-
-    fn along_y(&self, plane: &mut [f64], rows: &[bool]) {
-        let [x, y, _] = self.size;
-        let full: Vec<bool> =
-            plane.chunks_exact(x).map(|row| row.iter().any(|&v| v != 0.0)).collect();
-        let mut out = vec![0.0; x * y];
-        for (j, to) in out.chunks_exact_mut(x).enumerate().filter(|(j, _)| rows[*j]) {
-            for (i, from) in plane.chunks_exact(x).enumerate().filter(|(i, _)| full[*i]) {
-                add(to, self.kernels[1][y - 1 + j - i], from);
-            }
-        }
-        plane.iter_mut().zip(&out).for_each(|(to, &v)| *to = flushed(v));
     }
 
     /// Along z.
     fn across(&self, data: &[f64]) -> Vec<f64> {
         let [x, y, z] = self.size;
-        let full: Vec<bool> =
-            data.chunks_exact(x * y).map(|p| p.iter().any(|&v| v != 0.0)).collect();
-        let mut out = vec![0.0; data.len()];
-        let share = SHARE / (x * y) + 1;
-        out.par_chunks_exact_mut(x * y).with_min_len(share).enumerate().for_each(|(k, to)| {
-            for (i, from) in data.chunks_exact(x * y).enumerate().filter(|(i, _)| full[*i]) {
-                add(to, self.kernels[2][z - 1 + k - i], from);
-            }
-            to.iter_mut().for_each(|v| *v = flushed(*v));
-        });
-        out
+        let mut out = Array2::zeros((z, x * y));
+        let full = indices(data.chunks_exact(x * y).map(|p| p.iter().any(|&v| v != 0.0)));
+        if let (Some(&first), Some(&last), Ok(data)) =
+            (full.first(), full.last(), ArrayView2::from_shape((z, x * y), data))
+        {
+            let range = Slice::from(first..=last);
+            let planes = data.slice_axis(Axis(0), range);
+            let kernel = self.kernels[2].slice_axis(Axis(1), range);
+            let columns = planes.axis_chunks_iter(Axis(1), COLUMNS).into_par_iter();
+            let outs = out.axis_chunks_iter_mut(Axis(1), COLUMNS).into_par_iter();
+            outs.zip(columns).for_each(|(mut out, columns)| {
+                general_mat_mul(1.0, &kernel, &columns, 0.0, &mut out);
+                out.mapv_inplace(flushed);
+            });
+        }
+        out.into_raw_vec_and_offset().0
     }
 }
 
-/// to += factor * from
-fn add(to: &mut [f64], factor: f64, from: &[f64]) {
-    if factor == 0.0 {
-        return;
-    }
-    for (t, f) in to.iter_mut().zip(from) {
-        *t += factor * f;
-    }
+fn indices(wanted: impl Iterator<Item = bool>) -> Vec<usize> {
+    wanted.enumerate().filter_map(|(i, w)| w.then_some(i)).collect()
+}
+
+fn flush(mut values: Array2<f64>) -> Array2<f64> {
+    values.mapv_inplace(flushed);
+    values
 }
 
 #[cfg(test)]
@@ -144,8 +122,7 @@ mod tests {
     #[test]
     fn a_point_becomes_the_kernel_and_masks_agree() {
         let (size, gamma) = ([7u32, 5, 6], 3.0);
-        let mut gauss = Gauss::new(size);
-        gauss.set(gamma);
+        let gauss = Gauss::new(size, gamma);
         let [x, y, z] = gauss.size;
         let mut one = vec![0.0; x * y * z];
         one[2 + x * (3 + y)] = 2.0;

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! The last factor takes the Gaussian's blur out again (Janati et al. 2020), so that a single shape
-//! is its own barycentre and edges stay sharp. γ falls to (2 samples)² in stages, which finds the
-//! far moves first. The result is where the density exceeds the level that encloses the weighted
+//! is its own barycentre and edges stay sharp. γ falls to (2 samples)² in stages, the first of them on
+//! a lattice of half the samples a side: that finds the far moves first. The result is where the density exceeds the level that encloses the weighted
 //! mean volume, made a signed distance on the same lattice.
 //!
 //! **The lattice** is coarser than the final one ([`Morph::notes`] says how coarse): what is thinner
@@ -30,8 +30,9 @@ use gauss::{Gauss, SHARE, flushed};
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
-/// Widths of the Gaussian, in samples, and the rounds at each at most.
-const STAGES: [(f64, u32); 3] = [(8.0, 15), (4.0, 20), (2.0, 60)];
+/// Widths of the Gaussian, in samples of their lattice, and the rounds at each at most: on the
+/// halved lattice, then on the whole one.
+const STAGES: [&[(f64, u32)]; 2] = [&[(4.0, 15), (2.0, 20)], &[(2.0, 40)]];
 /// A stage ends when the mass that a round moves falls below this share.
 const STILL: f64 = 1e-3;
 /// Samples along the longest side at least and at most.
@@ -101,7 +102,7 @@ impl Morph for Transport {
         job.stage("transport");
         let taking: Vec<(&Mass, f64)> =
             masses.iter().zip(weights).filter(|(_, w)| *w > 0.0).collect();
-        let density = Barycentre::new(&self.lattice, &taking).run(job)?;
+        let density = barycentre(self.lattice.size, &taking, job)?;
         let volume: f64 = taking.iter().map(|(m, w)| m.volume * w).sum();
         let level = level(&density, volume);
         // as shares of the level, so that the samples fit f32
@@ -131,10 +132,57 @@ impl Mass {
         let mut density: Vec<f64> = distance.into_iter().map(share).collect();
         let volume: f64 = density.iter().sum();
         density.iter_mut().for_each(|m| *m /= volume.max(f64::MIN_POSITIVE));
-        let rows = density.chunks_exact(lattice.size[0] as usize);
-        let rows = rows.map(|r| r.iter().any(|&m| m > 0.0)).collect();
-        Ok(Self { density, volume, rows })
+        Ok(Self { rows: rows(&density, lattice.size), density, volume })
     }
+
+    /// On a lattice of half the samples a side.
+    fn halved(&self, size: [u32; 3]) -> Self {
+        let half = size.map(halved);
+        let [x, y, _] = size.map(|n| n as usize);
+        let [hx, hy, hz] = half.map(|n| n as usize);
+        let mut density = vec![0.0; hx * hy * hz];
+        for (n, &m) in self.density.iter().enumerate().filter(|(_, m)| **m > 0.0) {
+            let [i, j, k] = [n % x, n / x % y, n / (x * y)].map(|i| i / 2);
+            density[i + hx * (j + hy * k)] += m;
+        }
+        Self { rows: rows(&density, half), density, volume: self.volume / 8.0 }
+    }
+}
+
+/// Rows along x that hold any mass.
+fn rows(density: &[f64], size: [u32; 3]) -> Vec<bool> {
+    density.chunks_exact(size[0] as usize).map(|r| r.iter().any(|&m| m > 0.0)).collect()
+}
+
+fn halved(samples: u32) -> u32 {
+    samples.div_ceil(2)
+}
+
+/// Scalings of a halved lattice on the whole one of `size`: their logarithms, which are potentials,
+/// are linear in between.
+fn doubled(coarse: &[f64], half: [u32; 3], size: [u32; 3]) -> Vec<f64> {
+    let logs: Vec<f64> = coarse.iter().map(|x| x.max(1e-200).ln()).collect();
+    let [x, y, _] = size.map(|n| n as usize);
+    let [hx, hy, hz] = half.map(|n| n as usize);
+    // a sample of the whole lattice lies a quarter of a coarse cell from its coarse one
+    let ends = |i: usize, n: usize| {
+        let other = if i % 2 == 0 { (i / 2).saturating_sub(1) } else { (i / 2 + 1).min(n - 1) };
+        [(i / 2, 0.75), (other, 0.25)]
+    };
+    let at = |n: usize| {
+        let [i, j, k] = [ends(n % x, hx), ends(n / x % y, hy), ends(n / (x * y), hz)];
+        let mut sum = 0.0;
+        for (k, wk) in k {
+            for (j, wj) in j {
+                for (i, wi) in i {
+                    sum += wi * wj * wk * logs[i + hx * (j + hy * k)];
+                }
+            }
+        }
+        flushed(sum.exp())
+    };
+    let count = size.iter().map(|&n| n as usize).product();
+    (0..count).into_par_iter().with_min_len(SHARE).map(at).collect()
 }
 
 /// The density above which `volume` samples lie.
@@ -151,10 +199,36 @@ fn level(density: &[f64], volume: f64) -> f64 {
     0.5 * (last + *at)
 }
 
+/// Density of the barycentre of masses with their weights.
+fn barycentre(
+    size: [u32; 3],
+    masses: &[(&Mass, f64)],
+    job: &dyn Job,
+) -> Result<Vec<f64>, Cancelled> {
+    let halves: Vec<(Mass, f64)> = masses.iter().map(|(m, w)| (m.halved(size), *w)).collect();
+    let coarse: Vec<(&Mass, f64)> = halves.iter().map(|(m, w)| (m, *w)).collect();
+    let half = size.map(halved);
+    let mut start = Barycentre::new(half, &coarse);
+    start.run(STAGES[0], job)?;
+    let finer = |x: &Vec<f64>| doubled(x, half, size);
+    let mut whole = Barycentre {
+        b: start.b.iter().map(finer).collect(),
+        d: finer(&start.d),
+        // in samples of the whole lattice
+        gamma: 4.0 * start.gamma,
+        ..Barycentre::new(size, masses)
+    };
+    drop(start);
+    whole.run(STAGES[1], job)?;
+    Ok(whole.m)
+}
+
 /// The scaling iteration.
 struct Barycentre<'a> {
-    gauss: Gauss,
+    size: [u32; 3],
     masses: &'a [(&'a Mass, f64)],
+    /// Squared width of the Gaussian that the scalings are for; infinite before the first.
+    gamma: f64,
     /// The scalings b_j.
     b: Vec<Vec<f64>>,
     /// The factor against the blur.
@@ -163,52 +237,50 @@ struct Barycentre<'a> {
 }
 
 impl<'a> Barycentre<'a> {
-    fn new(lattice: &Lattice, masses: &'a [(&'a Mass, f64)]) -> Self {
-        let n = lattice.samples() as usize;
+    fn new(size: [u32; 3], masses: &'a [(&'a Mass, f64)]) -> Self {
+        let n = size.iter().map(|&n| n as usize).product();
         Self {
-            gauss: Gauss::new(lattice.size),
+            size,
             masses,
+            gamma: f64::INFINITY,
             b: vec![vec![1.0; n]; masses.len()],
             d: vec![1.0; n],
             m: vec![0.0; n],
         }
     }
 
-    fn run(mut self, job: &dyn Job) -> Result<Vec<f64>, Cancelled> {
-        let mut last = f64::INFINITY;
-        let all: u32 = STAGES.iter().map(|s| s.1).sum();
-        let mut count = 0;
-        for (width, rounds) in STAGES {
+    fn run(&mut self, stages: &[(f64, u32)], job: &dyn Job) -> Result<(), Cancelled> {
+        for &(width, rounds) in stages {
             let gamma = width * width;
-            self.gauss.set(gamma);
-            if last.is_finite() {
+            let gauss = Gauss::new(self.size, gamma);
+            if self.gamma.is_finite() {
                 // a scaling is exp(potential / γ), and potentials carry over
-                let power = last / gamma;
+                let power = self.gamma / gamma;
                 let fields = self.b.iter_mut().chain([&mut self.d]);
                 fields.for_each(|x| {
                     x.par_iter_mut().with_min_len(SHARE).for_each(|x| *x = scaled(*x, power))
                 });
             }
-            last = gamma;
+            self.gamma = gamma;
             for round in 0..rounds {
-                job.done(f64::from(count + round) / f64::from(all));
-                if self.round(job)? < STILL {
+                job.done(f64::from(round) / f64::from(rounds));
+                let moved = self.round(&gauss, job)?;
+                if moved < STILL {
                     break;
                 }
             }
-            count += rounds;
         }
-        Ok(self.m)
+        Ok(())
     }
 
     /// One round; the share of the mass that it moved.
-    fn round(&mut self, job: &dyn Job) -> Result<f64, Cancelled> {
+    fn round(&mut self, gauss: &Gauss, job: &dyn Job) -> Result<f64, Cancelled> {
         let mut spread = Vec::with_capacity(self.masses.len());
         for ((mass, _), b) in self.masses.iter().zip(&self.b) {
-            let mut a = self.gauss.onto(b, &mass.rows, job)?;
+            let mut a = gauss.onto(b, &mass.rows, job)?;
             let ratio = |(a, &m): (&mut f64, &f64)| *a = divided(m, *a);
             a.par_iter_mut().with_min_len(SHARE).zip(&mass.density).for_each(ratio);
-            spread.push(self.gauss.from(a, job)?);
+            spread.push(gauss.from(a, job)?);
         }
         let weights: Vec<f64> = self.masses.iter().map(|m| m.1).collect();
         let mean = |n: usize| {
@@ -216,7 +288,12 @@ impl<'a> Barycentre<'a> {
             let m = self.d[n] * logs.exp();
             if m.is_finite() { flushed(m) } else { 0.0 }
         };
-        let m: Vec<f64> = (0..self.d.len()).into_par_iter().with_min_len(SHARE).map(mean).collect();
+        let mut m: Vec<f64> =
+            (0..self.d.len()).into_par_iter().with_min_len(SHARE).map(mean).collect();
+        // one unit of mass, whatever the last width left: else stages begin with a long swing;
+        // summed in one order, so that every number of threads gives the same
+        let total: f64 = m.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        m.par_iter_mut().with_min_len(SHARE).for_each(|m| *m = flushed(*m / total));
         for (b, s) in self.b.iter_mut().zip(&spread) {
             b.par_iter_mut()
                 .with_min_len(SHARE)
@@ -225,14 +302,12 @@ impl<'a> Barycentre<'a> {
                 .for_each(|((b, s), m)| *b = divided(*m, *s));
         }
         drop(spread);
-        let back = self.gauss.from(self.d.clone(), job)?;
+        let back = gauss.from(self.d.clone(), job)?;
         let factor = |((d, h), m): ((&mut f64, &f64), &f64)| *d = divided(*d * m, *h).sqrt();
         self.d.par_iter_mut().with_min_len(SHARE).zip(&back).zip(&m).for_each(factor);
-        // summed in one order, so that every number of threads stops at the same round
         let moved: f64 = m.iter().zip(&self.m).map(|(a, b)| (a - b).abs()).sum();
-        let total: f64 = m.iter().sum();
         self.m = m;
-        Ok(moved / total.max(f64::MIN_POSITIVE))
+        Ok(moved)
     }
 }
 

@@ -135,7 +135,8 @@ fn failed(about: &Comparison) -> String {
     for s in about.methods.iter().filter(|s| s.frames == 0) {
         put(&s.method, "all", s.error.as_deref().unwrap_or("not made"));
     }
-    for r in &about.rows {
+    let applies = |r: &&Row| about.methods.iter().any(|s| s.method == r.method && s.frames > 0);
+    for r in about.rows.iter().filter(applies) {
         if let Some(why) = &r.error {
             put(&r.method, &time_word(r.t), why);
         }
@@ -328,6 +329,10 @@ fn facts(about: &Comparison) -> String {
         );
         all.push(("parent", text));
     }
+    for s in &about.searches {
+        all.push(("search", format!("{}: {} combinations tried", s.hybrid, s.tried)));
+    }
+    all.extend(about.notes.iter().map(|n| ("note", n.clone())));
     all.extend(about.inputs.iter().map(|i| ("input", format!("{}, SHA-256 {}", i.file, i.sha256))));
     let mut text = String::from("<dl class=\"facts\">");
     for (name, value) in all {

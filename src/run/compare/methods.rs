@@ -80,6 +80,12 @@ pub const METHODS: &[Method] = &[
         change: |m| maps(m, InnerEntry::Erode),
     },
     Method {
+        name: "auto",
+        says: "positions blended; what each part does is chosen by a search, and parts are found \
+               where the recipe has no features",
+        change: |m| plain(m, MethodEntry::Auto),
+    },
+    Method {
         name: "level-set",
         says: "the source's surface moves into the target's (Breen and Whitaker 2001)",
         change: |m| plain(m, MethodEntry::LevelSet),
@@ -159,7 +165,12 @@ pub fn choose(
     base: &MorphEntry,
 ) -> Result<Vec<Chosen>, String> {
     if wanted.is_empty() {
-        let applies = |c: &Chosen| applies(&c.entry, recipe, "morph").is_ok();
+        // parts are sought on meshes and solids only
+        let surfaces = recipe.shapes.values().any(|s| s.surface.is_some());
+        let applies = |c: &Chosen| {
+            let auto = c.entry.method == Some(MethodEntry::Auto);
+            !(auto && surfaces) && applies(&c.entry, recipe, "morph").is_ok()
+        };
         return Ok(METHODS.iter().map(|m| m.chosen(base)).filter(applies).collect());
     }
     let mut all: Vec<Chosen> = Vec::with_capacity(wanted.len());

@@ -24,7 +24,7 @@ use crate::morph::MorphError;
 use crate::num::Aabb;
 use crate::picture::{Cell, Image, Layout, Style, render, save_png, sheet};
 use crate::recipe::MesherEntry;
-use crate::scene::{Input, Scene, Variant};
+use crate::scene::{Input, Scene, Search, Variant};
 use measure::Parent;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -76,12 +76,14 @@ pub struct Comparison {
     pub voxel_mm: f64,
     /// Samples along x, y, z.
     pub samples: [u32; 3],
-    /// The times, in order.
+    /// The times, in order; beforehand those asked for.
     pub times: Vec<f64>,
     /// What each method is, in the order of the rows.
     pub says: Vec<[String; 2]>,
     /// What was assumed and found.
     pub notes: Vec<String>,
+    /// What the search of `auto` chose.
+    pub searches: Vec<Search>,
     /// Seconds from files to fields.
     pub seconds_shapes: f64,
     /// Seconds in all.
@@ -172,13 +174,18 @@ pub fn compare(
     about.samples = scene.lattice.size;
     let handles = about.parents.iter().filter_map(|p| p.genus).max().unwrap_or(0);
     let mut pictures: Vec<Option<Image>> = Vec::new();
+    about.times.sort_by(f64::total_cmp);
+    about.times.dedup();
     for [method, _] in about.says.clone() {
         if let Some((_, why)) = refused.iter().find(|(name, _)| *name == method) {
             about.methods.push(Summary::refused(&method, why));
+            about.rows.extend(about.times.iter().map(|&t| Row::refused(&method, t, why)));
+            pictures.resize(about.rows.len(), None);
             continue;
         }
         let Some(variant) = scene.variants.iter().find(|v| v.name == method) else { continue };
         let rows = frames(scene, variant, &parents, &how, job, &mut pictures, told)?;
+        about.notes.extend(notes(variant, &rows, job)?);
         about.methods.push(Summary::of(&method, &rows, handles));
         about.rows.extend(rows);
     }
@@ -249,6 +256,15 @@ fn frames(
         before = shell;
     }
     Ok(rows)
+}
+
+/// What a method says of how it works, once it has been made.
+fn notes(variant: &Variant, rows: &[Row], job: &dyn Job) -> Result<Vec<String>, Cancelled> {
+    let Some(row) = rows.iter().find(|r| r.error.is_none()) else { return Ok(Vec::new()) };
+    match variant.morph(row.t, job) {
+        Err(MorphError::Cancelled(stop)) => Err(stop),
+        morph => Ok(morph.map_or(Vec::new(), |m| m.notes())),
+    }
 }
 
 /// The mesh of a frame and its field.

@@ -73,6 +73,13 @@ pub struct Row {
     pub file: Option<String>,
 }
 
+impl Row {
+    /// Of a method that does not apply.
+    pub(super) fn refused(method: &str, t: f64, why: &str) -> Self {
+        Self { method: method.to_owned(), t, error: Some(why.to_owned()), ..Self::default() }
+    }
+}
+
 /// What is good in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Best {
