@@ -4,6 +4,8 @@
 mod chairs;
 /// The command: messages, exit codes, files.
 mod cli;
+/// Dirty meshes, and the solids that they mean.
+mod dirty;
 /// A module imports from lower floors only.
 mod floors;
 /// Files made to do harm, given to the built command.

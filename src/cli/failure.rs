@@ -47,6 +47,15 @@ impl Failure {
         Self::new(Self::INPUT, message)
     }
 
+    /// With the name of the file that it is about, if that is not in it already.
+    pub fn about(mut self, file: &str) -> Self {
+        let of_input = matches!(self.code, Self::INPUT | Self::LIMIT);
+        if of_input && !self.message.contains(file) {
+            self.message = format!("{file}: {}", self.message);
+        }
+        self
+    }
+
     /// Prints the message to stderr.
     pub fn tell(&self) {
         if !self.message.is_empty() {

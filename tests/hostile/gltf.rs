@@ -58,7 +58,7 @@ fn frames() -> Vec<Case> {
         word("a JSON chunk of 3 bytes", 12, 3),
         word("no JSON chunk", 16, 0x1234_5678).says("no JSON"),
         word("a binary chunk of billions", end, u32::MAX).says("4294967295"),
-        word("a binary chunk of 8 bytes", end, 8).says("byteLength"),
+        word("a binary chunk of 8 bytes", end, 8).says("chunk of"),
         word("no binary chunk", end + 4, 0x1234_5678).says("binary chunk"),
         new("a GLB in a GLB", glb(&String::from_utf8_lossy(&whole), &buffer())),
     ];
@@ -250,7 +250,9 @@ fn places() -> Vec<Case> {
         of("data without end", "data:"),
     ];
     all.push(of("a buffer cut short", "short.bin").beside("short.bin", &buffer()[..71]));
-    all.push(of("the file itself", "m.gltf").may_pass());
+    let mut itself = of("the file itself", "m.gltf");
+    itself.says.clear();
+    all.push(itself);
     all
 }
 

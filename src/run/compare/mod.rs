@@ -14,11 +14,12 @@ pub use row::{Best, COLUMNS, Column, Row, csv};
 pub use summary::{MEASURES, Measure, Summary};
 
 use super::files::{folder_of, place_text, time_word};
-use super::system::{Machine, reset_peak};
+use super::system::Machine;
 use super::{FrameResult, RunError, ShapeReport, Work, make, peak_memory};
 use crate::check::Shell;
 use crate::field::Shared;
 use crate::job::{self, Cancelled, Job};
+use crate::memory::reset_peak;
 use crate::mesh::{self, TriMesh};
 use crate::morph::MorphError;
 use crate::num::Aabb;
