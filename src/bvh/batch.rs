@@ -31,8 +31,8 @@ struct Scratch {
     octet: Vec<u32>,
     /// Squared distances of the run's candidates to the centres of its eight octets.
     centres: Vec<[f64; LANES]>,
-    /// The last point searched for and its distance.
-    last: Option<(DVec3, f64)>,
+    /// The triangle that was nearest to the last point searched for.
+    last: Option<u32>,
 }
 
 impl Bvh {
@@ -96,13 +96,13 @@ impl Bvh {
         }
     }
 
-    /// [`Bvh::closest`] with the reach that the point searched for before leaves.
+    /// [`Bvh::closest`], no farther than the triangle found before.
     fn closest_after(&self, p: DVec3, s: &mut Scratch) -> (f64, u32) {
-        let reach = s.last.map_or(f64::INFINITY, |(q, d)| d + p.distance(q) + 4.0 * self.slack(p));
-        // a point that is no number has no reach
-        let reach = reach.min(f64::INFINITY);
-        let found = self.closest(p, reach * reach, &mut s.stack);
-        s.last = (found.1 != u32::MAX).then(|| (p, found.0.sqrt()));
+        let known = s.last.map(|slot| self.tris[slot as usize].distance2(p.x, p.y, p.z));
+        // a point that is no number has no distance
+        let reach2 = known.map_or(f64::INFINITY, |d2| d2.min(f64::INFINITY));
+        let found = self.closest(p, reach2, &mut s.stack);
+        s.last = (found.1 != u32::MAX).then_some(found.1).or(s.last);
         found
     }
 

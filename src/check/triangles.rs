@@ -81,6 +81,9 @@ pub(super) fn meet(a: &Triangle, b: &Triangle) -> bool {
 /// to three products of differences, far below any angle that matters for speed.
 const CERTAIN: f64 = 1e-12;
 
+/// Squared share that must be left of a vector for its direction to be as good as [`CERTAIN`] takes it.
+const SURE: f64 = 1e-6;
+
 /// Whether a plane through `origin` certainly parts some points from others. Settles most pairs
 /// without a predicate; what it leaves open is judged exactly.
 fn parted(above: &[DVec3], below: &[DVec3], origin: DVec3, normal: DVec3) -> bool {
@@ -111,7 +114,9 @@ fn folded(a: &Triangle, b: &Triangle, one: (usize, usize), two: (usize, usize)) 
     let (p, q) = (a.at[3 - one.0 - two.0], b.at[3 - one.1 - two.1]);
     let (edge, across) = (v - u, p - q);
     let normal = across - edge * (across.dot(edge) / edge.length_squared());
-    if parted(&[p], &[q], u, normal) {
+    // a normal left over from what cancelled holds the edge in no plane
+    let sure = normal.length_squared() > SURE * across.length_squared();
+    if sure && parted(&[p], &[q], u, normal) {
         return false;
     }
     side(a.at, q) == 0 && {
@@ -261,6 +266,24 @@ mod tests {
                 prop_assert_eq!(found, meet(&a, &turned));
                 prop_assert!(found || !witness(&a, &b));
             }
+        }
+    }
+
+    /// Two triangles of one edge whose third corners are equally far from it: what parts them is what
+    /// rounding left.
+    #[test]
+    fn meeting_is_mutual() {
+        let tenths = |at: [[i32; 3]; 3], names| {
+            let at = at.map(|p| DVec3::from(p.map(f64::from)) * 0.1);
+            Triangle::new(at, names).expect("the triangle has an area")
+        };
+        for (a, b) in [
+            ([[3, 4, 1], [3, 2, 1], [5, 2, 2]], [[3, 2, 1], [5, 5, 2], [3, 4, 1]]),
+            ([[4, 0, 2], [4, 3, 4], [4, 0, 1]], [[4, 3, 4], [4, 3, 3], [4, 0, 2]]),
+            ([[2, 1, 0], [0, 2, 0], [3, 4, 4]], [[0, 2, 0], [5, 3, 4], [2, 1, 0]]),
+        ] {
+            let (a, b) = (tenths(a, [0, 1, 2]), tenths(b, [1, 5, 0]));
+            assert!(meet(&a, &b) && meet(&b, &a));
         }
     }
 }

@@ -8,7 +8,7 @@ use clap::Args;
 use fieldgraft::picture::Style;
 use fieldgraft::recipe::{MorphEntry, Recipe, RecipeError, Times, did_you_mean, read_text};
 use fieldgraft::run::compare::{self, Chosen, Compare as How, Comparison, Row};
-use fieldgraft::run::{Machine, Prediction, ShapeReport, predict, time_word};
+use fieldgraft::run::{Machine, Playing, Prediction, ShapeReport, predict, time_word};
 use fieldgraft::scene::{Draft, SceneError, applies, sha256};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -37,6 +37,10 @@ pub struct Compare {
     /// the recipe's output.crumbs says, else none
     #[arg(long, value_name = "SHARE", value_parser = share)]
     crumbs: Option<f64>,
+    /// Also play each method, in animations/: webp or gif (pictures), glb (meshes); as
+    /// output.fps and output.ping_pong of the recipe say
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = ["webp", "gif", "glb"])]
+    animation: Vec<String>,
     /// Write no meshes
     #[arg(long)]
     no_meshes: bool,
@@ -177,6 +181,8 @@ impl Compare {
             crumbs: self.crumbs.or(recipe.output.crumbs).unwrap_or(0.0),
             parents,
             style: Style { size: PICTURE, ..Style::default() },
+            animations: self.animation.clone(),
+            playing: Playing::of(&recipe.output),
         }
     }
 
@@ -195,6 +201,10 @@ impl Compare {
             let sound = r.closed == Some(true) && r.manifold == Some(true);
             r.error.is_none() && !(sound && r.self_intersections.unwrap_or(0) == 0)
         };
+        let failed = done.animations.iter().find_map(|a| a.error.clone());
+        if let Some(why) = failed {
+            return Err(Failure::new(Failure::FAILED, why));
+        }
         match done.rows.iter().find(bad).filter(|_| self.making.strict) {
             Some(r) => {
                 let why = format!("{} at t {}: not printable (--strict)", r.method, time_word(r.t));

@@ -1,5 +1,6 @@
 use crate::util::Folder;
 use serde_json::Value;
+use std::f64::consts::{PI, TAU};
 use std::fs;
 
 /// A block and a rod that one feature joins, and a name that must be escaped.
@@ -97,6 +98,25 @@ fn the_report_is_whole_and_asks_nobody() {
 }
 
 #[test]
+fn methods_can_be_played() {
+    let args = ["--methods", "linear,graft:erode", "--no-meshes", "--animation", "webp,glb"];
+    let (folder, _) = compared(PAIR, &args);
+    let all = json(&folder);
+    let played = all["animations"].as_array().unwrap();
+    assert_eq!(played.len(), 4);
+    for (one, name) in
+        played.iter().zip(["linear.webp", "linear.glb", "graft-erode.webp", "graft-erode.glb"])
+    {
+        assert_eq!((&one["frames"], &one["turns"]), (&3.into(), &4.into()));
+        let file = folder.join(&format!("out/animations/{name}"));
+        assert_eq!(fs::metadata(file).unwrap().len(), one["file_bytes"].as_u64().unwrap());
+    }
+    let again = folder.run(&["compare", "r.toml", "-o", "out", "--animation", "glb"]);
+    again.fails(2, &["exists already"]);
+    folder.run(&["compare", "r.toml", "--animation", "mp4"]).ends(2);
+}
+
+#[test]
 fn a_method_that_does_not_apply_leaves_a_row_and_the_rest_goes_on() {
     let start = PAIR.find("[[features]]").unwrap();
     let end = PAIR.find("[morph]").unwrap();
@@ -151,4 +171,83 @@ fn what_cannot_be_compared() {
     compare(&["--methods", "linear", "-t", "0.5", "--no-meshes"]).ends(0);
     compare(&["--methods", "linear", "-t", "0.5"]).fails(2, &["exists already", "--force"]);
     compare(&["--methods", "linear", "-t", "0.5", "--force", "--strict"]).ends(0);
+}
+
+/// A torus about the z axis as OBJ, 160 by 64 points.
+fn torus(radius: f64, tube: f64) -> String {
+    let (n, m) = (160, 64);
+    let mut text = String::new();
+    for i in 0..n * m {
+        let [u, v] = [i / m * m, i % m * n].map(|k| k as f64 / (n * m) as f64 * TAU);
+        let out = radius + tube * v.cos();
+        text += &format!("v {} {} {}\n", out * u.cos(), out * u.sin(), tube * v.sin());
+    }
+    for i in 0..n * m {
+        let at = |i: usize, j: usize| (i % n) * m + j % m + 1;
+        let (i, j) = (i / m, i % m);
+        let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        text += &format!("f {} {} {} {}\n", corners[0], corners[1], corners[2], corners[3]);
+    }
+    text
+}
+
+/// The rows of `linear` between two shapes at t = 0, 1/2, 1, and the side of a cell.
+fn linear(shapes: &str, files: &[(&str, String)]) -> (Vec<Value>, f64) {
+    let folder = Folder::new();
+    files.iter().for_each(|(name, text)| drop(folder.put(name, text)));
+    let tail = "[morph]\nbetween = [\"a\", \"b\"]\nt = [0, 0.5, 1]\n";
+    folder.put("r.toml", &format!("version = 1\n[grid]\nresolution = 48\n{shapes}{tail}"));
+    let args = ["compare", "r.toml", "-o", "out", "--methods", "linear", "--no-meshes"];
+    folder.run(&args).ends(0);
+    let all = json(&folder);
+    (all["rows"].as_array().unwrap().clone(), all["voxel_mm"].as_f64().unwrap())
+}
+
+fn number(row: &Value, key: &str) -> f64 {
+    row[key].as_f64().unwrap_or_else(|| panic!("{key}: {row}"))
+}
+
+#[test]
+fn a_torus_that_shrinks_has_the_measures_of_a_torus() {
+    let shapes = "[shapes.a]\nmesh = \"a.obj\"\nplace = \"keep\"\n[shapes.b]\nmesh = \"b.obj\"\n\
+                  place = \"keep\"\n";
+    let (rows, cell) = linear(shapes, &[("a.obj", torus(20.0, 7.0)), ("b.obj", torus(20.0, 4.0))]);
+    for (row, tube) in rows.iter().zip([7.0, 5.5, 4.0]) {
+        // second order in the cell, and what the 64-gon lacks
+        let off = 0.4 * (cell / tube).powi(2) + 0.002;
+        let volume = 2.0 * PI * PI * 20.0 * tube * tube;
+        assert!((number(row, "volume_mm3") / volume - 1.0).abs() < off, "{row}");
+        let area = 4.0 * PI * PI * 20.0 * tube;
+        assert!((number(row, "area_mm2") / area - 1.0).abs() < off, "{row}");
+        assert_eq!((&row["genus"], &row["pieces"]), (&1.into(), &1.into()));
+        assert!((number(row, "min_wall_mm") - 2.0 * tube).abs() < 0.3 * cell, "{row}");
+        for (key, way) in [("hausdorff_to_a_mm", 7.0 - tube), ("hausdorff_to_b_mm", tube - 4.0)] {
+            let off = number(row, key) - way;
+            let error = number(row, "hausdorff_error_mm");
+            assert!(off.abs() < 0.1 * cell + error, "{key}: {row}");
+        }
+        assert!((number(row, "mean_to_a_mm") - (7.0 - tube)).abs() < 0.05 * cell, "{row}");
+    }
+    for row in &rows[1..] {
+        assert!((number(row, "step_mm") - 1.5).abs() < 0.1 * cell, "{row}");
+    }
+}
+
+#[test]
+fn a_bar_that_splits_becomes_two_pieces() {
+    let part = |x: f64, long: f64| {
+        format!("{{ box = {{ center = [{x}, 0, 6], size = [{long}, 12, 12] }} }}")
+    };
+    let solid = |parts: &[String]| format!("solid = {{ parts = [{}] }}\n", parts.join(", "));
+    let whole = solid(&[part(0.0, 60.0)]);
+    let split = solid(&[part(-20.0, 20.0), part(20.0, 20.0)]);
+    let (rows, _) = linear(&format!("[shapes.a]\n{whole}[shapes.b]\n{split}"), &[]);
+    let pieces: Vec<&Value> = rows.iter().map(|r| &r["pieces"]).collect();
+    assert_eq!((pieces[0], pieces[2]), (&1.into(), &2.into()));
+    let half = number(&rows[2], "smallest_piece_share");
+    assert!((half - 0.5).abs() < 1e-3, "{half}");
+    assert!((number(&rows[2], "smallest_piece_mm3") / 2880.0 - 1.0).abs() < 0.03, "{}", rows[2]);
+    assert!((number(&rows[2], "volume_kept") - 1.0).abs() < 0.03, "{}", rows[2]);
+    // the middle of the bar's side is half the gap from the edges of the split one's ends
+    assert!((number(&rows[2], "hausdorff_to_a_mm") - 10.0).abs() < 0.7, "{}", rows[2]);
 }

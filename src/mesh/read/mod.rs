@@ -76,7 +76,7 @@ pub fn read(path: &Path, assume: Assume) -> Result<Loaded, MeshError> {
 fn load(bytes: &[u8], format: Format, folder: &Path, assume: Assume) -> Parsed<Loaded> {
     let up = assume.up.unwrap_or(format.up());
     let unit = assume.unit.unwrap_or(format.unit());
-    let (raw, kinds) = parse(bytes, format, folder, up, unit)?;
+    let (raw, kinds) = parse(bytes, format, folder, up, unit).map_err(Fault::fit_to_show)?;
     let (mesh, counts) = welded(&raw);
     let found = Found::after(&mesh, raw.points.len(), kinds, counts);
     Ok(Loaded { mesh, found, up, unit })

@@ -166,7 +166,8 @@ fn doubled(coarse: &[f64], half: [u32; 3], size: [u32; 3]) -> Vec<f64> {
     let [hx, hy, hz] = half.map(|n| n as usize);
     // a sample of the whole lattice lies a quarter of a coarse cell from its coarse one
     let ends = |i: usize, n: usize| {
-        let other = if i % 2 == 0 { (i / 2).saturating_sub(1) } else { (i / 2 + 1).min(n - 1) };
+        let other =
+            if i.is_multiple_of(2) { (i / 2).saturating_sub(1) } else { (i / 2 + 1).min(n - 1) };
         [(i / 2, 0.75), (other, 0.25)]
     };
     let at = |n: usize| {

@@ -85,7 +85,12 @@ fn number(value: Option<f64>, decimals: usize) -> String {
 
 fn pieces(m: &Summary) -> String {
     let most = m.pieces_max.map_or_else(|| "no".to_owned(), |n| n.to_string());
-    format!("{most} pieces at most, in one piece at {} of {} times", m.whole, m.frames)
+    let Summary { whole, nearly_whole, frames, .. } = m;
+    let specks = match nearly_whole > whole {
+        true => format!(" ({nearly_whole} when specks under 0.5% of the volume do not count)"),
+        false => String::new(),
+    };
+    format!("{most} pieces at most, in one piece at {whole} of {frames} times{specks}")
 }
 
 fn missing(m: &Summary) -> String {
@@ -140,6 +145,7 @@ fn better(said: &str, m: &Summary, others: &[&Summary]) -> Claim {
     for other in others {
         let counts = [
             (other.frames - other.whole, m.frames - m.whole),
+            (other.frames - other.nearly_whole, m.frames - m.nearly_whole),
             (other.frames - other.made, m.frames - m.made),
         ];
         let lengths = [(other.kept_off, m.kept_off), (other.unevenness, m.unevenness)];
@@ -154,20 +160,22 @@ fn better(said: &str, m: &Summary, others: &[&Summary]) -> Claim {
             }
         }
         parts.push(format!(
-            "{}: in one piece at {} of {}, volume off by {}%, unevenness {}",
+            "{}: in one piece at {} of {} ({} but for specks), volume off by {}%, unevenness {}",
             other.method,
             other.whole,
             other.frames,
+            other.nearly_whole,
             number(other.kept_off.map(|k| k * 100.0), 0),
             number(other.unevenness, 2)
         ));
     }
     let numbers = format!(
-        "{}: in one piece at {} of {} times{}, volume off by {}%, unevenness {}; {}. Better in {won} \
-         of {contests} counts that differ.",
+        "{}: in one piece at {} of {} times ({} but for specks){}, volume off by {}%, unevenness {}; {}. \
+         Better in {won} of {contests} counts that differ.",
         m.method,
         m.whole,
         m.frames,
+        m.nearly_whole,
         missing(m),
         number(m.kept_off.map(|k| k * 100.0), 0),
         number(m.unevenness, 2),
@@ -187,7 +195,7 @@ fn one_piece(said: &str, m: &Summary) -> Claim {
     );
     let verdict = match m.frames - m.whole {
         0 => Verdict::Agrees,
-        broken if broken * 3 <= m.frames => Verdict::Partly,
+        broken if broken * 3 <= m.frames || m.nearly_whole == m.frames => Verdict::Partly,
         _ => Verdict::Disagrees,
     };
     Claim { paper: said.to_owned(), numbers, verdict }
@@ -203,6 +211,7 @@ mod tests {
             frames: 9,
             made: 9,
             whole,
+            nearly_whole: whole,
             pieces_max: Some(if whole == 9 { 1 } else { 40 }),
             kept_min: Some(kept),
             kept_off: Some(1.0 - kept),
@@ -228,6 +237,8 @@ mod tests {
         assert_eq!(verdicts(vec![summary("graft", 9, 1.0)]), [Verdict::Agrees]);
         assert_eq!(verdicts(vec![summary("graft", 8, 1.0)]), [Verdict::Partly]);
         assert_eq!(verdicts(vec![summary("graft", 0, 1.0)]), [Verdict::Disagrees]);
+        let specks = Summary { nearly_whole: 9, ..summary("graft", 0, 1.0) };
+        assert_eq!(verdicts(vec![specks]), [Verdict::Partly]);
         assert!(verdicts(vec![summary("group", 9, 1.0)]).is_empty());
         assert!(verdicts(vec![Summary::refused("graft", "no features")]).is_empty());
     }

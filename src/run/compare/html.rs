@@ -329,6 +329,10 @@ fn facts(about: &Comparison) -> String {
         );
         all.push(("parent", text));
     }
+    for a in &about.animations {
+        let why = a.error.as_ref().or(a.note.as_ref());
+        all.extend(a.file.as_ref().or(why).map(|text| ("animation", text.clone())));
+    }
     for s in &about.searches {
         all.push(("search", format!("{}: {} combinations tried", s.hybrid, s.tried)));
     }

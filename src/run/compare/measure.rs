@@ -87,7 +87,7 @@ pub(super) fn mesh(
     job: &dyn Job,
 ) -> Result<(), Cancelled> {
     job.stage("measure");
-    smallest(row, shell.mesh());
+    pieces(row, shell.mesh());
     row.min_wall_mm = thinnest_wall(shell, job)?;
     let mut error: f64 = 0.0;
     let mut nearer: Option<Vec<f64>> = None;
@@ -125,10 +125,13 @@ fn pair(apart: Option<Apart>) -> (Option<f64>, Option<f64>) {
     (apart.map(|a| a.hausdorff), apart.map(|a| a.mean))
 }
 
-fn smallest(row: &mut Row, mesh: &TriMesh) {
+/// The sizes of the pieces.
+fn pieces(row: &mut Row, mesh: &TriMesh) {
     let (_, all) = parts(mesh);
-    let solids = all.iter().map(|p| p.volume_mm3).filter(|v| *v > 0.0);
-    row.smallest_piece_mm3 = solids.reduce(f64::min);
+    let solids = || all.iter().map(|p| p.volume_mm3).filter(|v| *v > 0.0);
+    let large = |whole: f64| solids().filter(|v| *v >= Row::LARGE * whole).count() as u64;
+    row.large_pieces = row.volume_mm3.map(large);
+    row.smallest_piece_mm3 = solids().reduce(f64::min);
     row.smallest_piece_share =
         row.smallest_piece_mm3.zip(row.volume_mm3).filter(|(_, v)| *v > 0.0).map(|(s, v)| s / v);
 }

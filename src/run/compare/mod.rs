@@ -15,7 +15,10 @@ pub use summary::{MEASURES, Measure, Summary};
 
 use super::files::{folder_of, place_text, time_word};
 use super::system::Machine;
-use super::{FrameResult, RunError, ShapeReport, Work, make, peak_memory};
+use super::{
+    AnimationReport, FrameResult, Names, Playing, Reel, RunError, Settings, ShapeReport, Work,
+    make, peak_memory,
+};
 use crate::check::Shell;
 use crate::field::Shared;
 use crate::job::{self, Cancelled, Job};
@@ -50,6 +53,10 @@ pub struct Compare {
     pub parents: Vec<String>,
     /// How pictures look.
     pub style: Style,
+    /// Endings of the animations of each method: `webp`, `gif`, `glb`.
+    pub animations: Vec<String>,
+    /// How animations are played.
+    pub playing: Playing,
 }
 
 /// Everything that was found: `metrics.json`.
@@ -93,6 +100,8 @@ pub struct Comparison {
     pub peak_memory_mb: Option<f64>,
     /// Each method over all times.
     pub methods: Vec<Summary>,
+    /// What became of the animations.
+    pub animations: Vec<AnimationReport>,
     /// What paper 001 says of these methods, and what the numbers say.
     pub claims: Vec<Claim>,
     /// Each method at each time.
@@ -125,7 +134,13 @@ impl Compare {
             return Ok(());
         }
         let meshes = methods.iter().flat_map(|m| times.iter().map(|&t| mesh_name(m, t)));
-        let all = FILES.iter().map(|f| (*f).to_owned()).chain(meshes.filter(|_| self.meshes));
+        let films = methods.iter().flat_map(|m| {
+            self.animations
+                .iter()
+                .map(move |ending| format!("animations/{}.{ending}", file_word(m)))
+        });
+        let meshes = meshes.filter(|_| self.meshes);
+        let all = FILES.iter().map(|f| (*f).to_owned()).chain(meshes).chain(films);
         for name in all {
             let file = self.folder.join(name);
             if file.symlink_metadata().is_ok() {
@@ -134,11 +149,39 @@ impl Compare {
         }
         Ok(())
     }
+
+    /// Collects the frames of a method for its animations.
+    fn reel(&self, method: &str, recipe_hash: &str) -> Reel {
+        let animations = self.animations.iter().map(|e| format!("animations/{{name}}.{e}"));
+        let names = Names {
+            folder: self.folder.clone(),
+            mesh: String::new(),
+            picture: None,
+            animations: animations.collect(),
+            report: String::new(),
+            unnamed: String::new(),
+        };
+        let settings = Settings {
+            names,
+            mesher: self.mesher,
+            force: self.force,
+            verify: self.verify,
+            playing: self.playing,
+            style: self.style,
+            recipe_hash: recipe_hash.to_owned(),
+        };
+        Reel::new(&file_word(method), &settings)
+    }
+}
+
+/// A method's name in file names.
+fn file_word(method: &str) -> String {
+    method.replace([':', '/', '\\'], "-")
 }
 
 /// The mesh of a method at a time, relative to the folder.
 fn mesh_name(method: &str, t: f64) -> String {
-    format!("meshes/{}-{}.stl", method.replace([':', '/', '\\'], "-"), time_word(t))
+    format!("meshes/{}-{}.stl", file_word(method), time_word(t))
 }
 
 /// The box that all pictures are fitted to.
@@ -185,7 +228,12 @@ pub fn compare(
             continue;
         }
         let Some(variant) = scene.variants.iter().find(|v| v.name == method) else { continue };
-        let rows = frames(scene, variant, &parents, &how, job, &mut pictures, told)?;
+        let mut reel = how.reel(&method, &about.recipe_sha256);
+        let rows = frames(scene, variant, &parents, &how, job, (&mut pictures, &mut reel), told)?;
+        // a method that vanishes has its rows to say so, and nothing to play
+        if rows.iter().filter(|r| r.error.is_none()).count() > 1 {
+            about.animations.extend(reel.finish(job)?);
+        }
         about.notes.extend(notes(variant, &rows, job)?);
         about.methods.push(Summary::of(&method, &rows, handles));
         about.rows.extend(rows);
@@ -210,7 +258,7 @@ fn frames(
     parents: &[Parent],
     how: &Compare,
     job: &dyn Job,
-    pictures: &mut Vec<Option<Image>>,
+    (pictures, reel): (&mut Vec<Option<Image>>, &mut Reel),
     told: &mut dyn FnMut(&Row),
 ) -> Result<Vec<Row>, RunError> {
     let mut times = variant.times.clone();
@@ -251,6 +299,7 @@ fn frames(
         }
         job.stage("picture");
         let drawn = shell.as_ref().map(|s| render(s.mesh(), &how.style)).transpose()?;
+        reel.add(t, shell.as_ref().map(Shell::mesh), drawn.clone(), job)?;
         pictures.push(drawn);
         told(&row);
         rows.push(row);

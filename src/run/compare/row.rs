@@ -47,6 +47,8 @@ pub struct Row {
     pub step_mm: Option<f64>,
     /// Components of positive volume.
     pub pieces: Option<u64>,
+    /// Pieces of at least [`Row::LARGE`] of the volume; the others are specks.
+    pub large_pieces: Option<u64>,
     /// Volume of the smallest piece.
     pub smallest_piece_mm3: Option<f64>,
     /// That over the whole volume.
@@ -74,6 +76,9 @@ pub struct Row {
 }
 
 impl Row {
+    /// Share of the volume from which on a piece is no speck.
+    pub const LARGE: f64 = 0.005;
+
     /// Of a method that does not apply.
     pub(super) fn refused(method: &str, t: f64, why: &str) -> Self {
         Self { method: method.to_owned(), t, error: Some(why.to_owned()), ..Self::default() }
@@ -193,6 +198,7 @@ pub const COLUMNS: &[Column] = &[
         "Hausdorff distance to the frame before in t; empty where either has no mesh."
     ),
     column!(pieces, "", "Components of positive volume: solids; exact."),
+    column!(large_pieces, "", "Pieces of at least 0.5% of the volume; the others are specks."),
     column!(smallest_piece_mm3, "mm³", "Volume of the smallest piece."),
     column!(smallest_piece_share, "", "Volume of the smallest piece over the whole."),
     column!(

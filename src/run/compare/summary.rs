@@ -16,6 +16,8 @@ pub struct Summary {
     pub error: Option<String>,
     /// Times at which the result is of one piece.
     pub whole: usize,
+    /// Times at which all but one of the pieces are specks.
+    pub nearly_whole: usize,
     /// Most pieces at a time.
     pub pieces_max: Option<u64>,
     /// Least volume kept.
@@ -74,6 +76,7 @@ impl Summary {
             made: rows.iter().filter(|r| r.error.is_none()).count(),
             error: rows.iter().find_map(|r| r.error.clone()),
             whole: rows.iter().filter(|r| r.pieces == Some(1)).count(),
+            nearly_whole: rows.iter().filter(|r| r.large_pieces == Some(1)).count(),
             pieces_max: rows.iter().filter_map(|r| r.pieces).max(),
             kept_min: least(known(rows, |r| r.volume_kept)),
             kept_off: mean(known(rows, |r| r.volume_kept.map(|k| (k - 1.0).abs()))),
@@ -132,6 +135,14 @@ pub const MEASURES: &[Measure] = &[
         best: Best::High,
         decimals: 0,
         value: |s| (s.made > 0).then_some(s.whole as f64),
+    },
+    Measure {
+        title: "one piece but for specks",
+        unit: "",
+        says: "times at which all but one of the pieces have under 0.5% of the volume each",
+        best: Best::High,
+        decimals: 0,
+        value: |s| (s.made > 0).then_some(s.nearly_whole as f64),
     },
     Measure {
         title: "most pieces",
