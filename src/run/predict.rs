@@ -108,7 +108,7 @@ fn total(frames: u64, lattice: &Lattice, size: Size, shapes: f64) -> Prediction 
         active_bricks: size.active_bricks as u64,
         triangles: size.triangles as u64,
         memory_bytes: memory as u64,
-        file_bytes: 84 + 50 * size.triangles as u64,
+        file_bytes: (84.0 + 50.0 * size.triangles) as u64,
     }
 }
 
@@ -154,7 +154,7 @@ pub fn probe(
         triangles: most.triangles as u64,
         memory_bytes: (fixed + most.active_bricks * BRICK_BYTES + most.triangles * TRIANGLE_BYTES)
             as u64,
-        file_bytes: 84 + 50 * most.triangles as u64,
+        file_bytes: (84.0 + 50.0 * most.triangles) as u64,
         ..*first
     })
 }
