@@ -52,11 +52,13 @@
 //! | 3 | [`element`] |
 //! | 2 | [`bvh`], [`surface`] |
 //! | 1 | [`mesh`], [`grid`], [`warp`], [`weight`] |
-//! | 0 | [`num`], [`job`] |
+//! | 0 | [`num`], [`job`], [`memory`], [`place`] |
 
 // floor 0
 pub mod job;
+pub mod memory;
 pub mod num;
+pub mod place;
 // floor 1
 pub mod grid;
 pub mod mesh;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 const FLOORS: &[&[&str]] = &[
-    &["num", "job"],
+    &["num", "job", "memory", "place"],
     &["mesh", "grid", "weight", "warp"],
     &["bvh", "surface"],
     &["element"],

@@ -18,19 +18,36 @@ pub(super) fn contacts(mesh: &Welded) -> Option<Vec<bool>> {
     if !mesh.points.iter().all(|p| p.abs().cmplt(DVec3::splat(FARTHEST)).all()) {
         return None;
     }
-    let mut faces = Vec::with_capacity(mesh.faces.len());
-    let mut triangles = Vec::with_capacity(mesh.faces.len());
-    for (i, names) in mesh.faces.iter().enumerate() {
-        if let Some(t) = Triangle::new(names.map(|v| mesh.points[v as usize]), *names) {
-            faces.push(i);
-            triangles.push(t);
-        }
-    }
+    // of faces over the same vertices one stands for all: a pile of n copies has n² pairs
+    let piles = piles(mesh);
+    let mut triangles = Vec::with_capacity(piles.len());
+    let mut solid = |pile: &Vec<u32>| {
+        let names = mesh.faces[pile[0] as usize];
+        let t = Triangle::new(names.map(|v| mesh.points[v as usize]), names);
+        t.map(|t| triangles.push(t)).is_some()
+    };
+    let piles: Vec<Vec<u32>> = piles.into_iter().filter(|pile| solid(pile)).collect();
     let mut met = vec![false; mesh.faces.len()];
-    for (i, met_it) in faces.into_iter().zip(meetings(&triangles)) {
-        met[i] = met_it;
+    for (pile, met_it) in piles.iter().zip(meetings(&triangles)) {
+        pile.iter().for_each(|&i| met[i as usize] = met_it || pile.len() > 1);
     }
     Some(met)
+}
+
+/// Faces over the same three vertices.
+fn piles(mesh: &Welded) -> Vec<Vec<u32>> {
+    let mut keys: Vec<([u32; 3], u32)> = mesh
+        .faces
+        .iter()
+        .zip(0..)
+        .map(|(f, i)| {
+            let mut key = *f;
+            key.sort_unstable();
+            (key, i)
+        })
+        .collect();
+    keys.par_sort_unstable();
+    keys.chunk_by(|a, b| a.0 == b.0).map(|pile| pile.iter().map(|k| k.1).collect()).collect()
 }
 
 fn meetings(triangles: &[Triangle]) -> Vec<bool> {

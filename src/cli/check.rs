@@ -1,6 +1,6 @@
 //! `check`: the state of meshes, in words or as JSON.
 
-use super::failure::Failure;
+use super::failure::{Failure, plain};
 use super::inputs::Reading;
 use super::watch::Watch;
 use clap::Args;
@@ -141,7 +141,7 @@ impl Check {
         let mut health = inspect(&loaded.mesh, &Options::default());
         self.walls(loaded.mesh, &mut health, watch)?;
         let told = if self.json { json_line(file, &health) } else { words(file, &health) };
-        watch.put(&told)?;
+        watch.put(&plain(&told))?;
         Ok(health.printable)
     }
 }
@@ -184,12 +184,12 @@ fn words(file: &Path, h: &Health) -> String {
     let genus = h.genus.map_or_else(|| "unknown".to_owned(), |g| g.to_string());
     let wall = h.min_wall_mm.map_or_else(|| "unknown".to_owned(), |w| format!("{w:.2}"));
     let stands = h.balanced.map_or("unknown", yes);
+    let name = file.display().to_string().replace('\n', " ");
     let mut text = format!(
-        "{}: {verdict}\n  triangles {}, vertices {}\n  closed {}, manifold edges {}, manifold \
+        "{name}: {verdict}\n  triangles {}, vertices {}\n  closed {}, manifold edges {}, manifold \
          vertices {}, oriented {}\n  self-intersections {}\n  components {}, floating parts {}, \
          cavities {}, genus {genus}\n  size {} mm, volume {volume} cm3, area {:.1} cm2\n  thinnest \
          wall {wall} mm, stands by itself {stands}",
-        file.display(),
         h.triangles,
         h.vertices,
         yes(h.closed),

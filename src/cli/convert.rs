@@ -46,6 +46,11 @@ pub struct Convert {
 impl Convert {
     /// Converts.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
+        let name = self.input.display().to_string();
+        self.convert(watch).map_err(|e| e.about(&name))
+    }
+
+    fn convert(self, watch: &Watch) -> Result<(), Failure> {
         let start = Instant::now();
         let field_out =
             self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy")) && !self.shells;

@@ -6,6 +6,7 @@ use fieldgraft::picture::PictureError;
 use fieldgraft::recipe::RecipeError;
 use fieldgraft::run::RunError;
 use fieldgraft::scene::SceneError;
+use std::borrow::Cow;
 use std::io::Write;
 
 /// An exit code and its message.
@@ -46,13 +47,45 @@ impl Failure {
         Self::new(Self::INPUT, message)
     }
 
+    /// With the name of the file that it is about, if that is not in it already.
+    pub fn about(mut self, file: &str) -> Self {
+        let of_input = matches!(self.code, Self::INPUT | Self::LIMIT);
+        if of_input && !self.message.contains(file) {
+            self.message = format!("{file}: {}", self.message);
+        }
+        self
+    }
+
     /// Prints the message to stderr.
     pub fn tell(&self) {
         if !self.message.is_empty() {
             // nowhere is left to complain to if stderr is gone
-            let _ = writeln!(std::io::stderr(), "error: {}", self.message);
+            let _ = writeln!(std::io::stderr(), "error: {}", paragraph(&self.message));
         }
     }
+}
+
+/// Longest message, characters: names and values in it come from files.
+const LONGEST: usize = 600;
+
+/// A message in one paragraph: no line breaks, no codes, not longer than a person reads.
+fn paragraph(message: &str) -> String {
+    let one_line = message.replace('\n', " ");
+    let mut text: String = plain(&one_line).chars().take(LONGEST).collect();
+    if text.len() < one_line.len() && one_line.chars().nth(LONGEST).is_some() {
+        text.push_str("...");
+    }
+    text
+}
+
+/// Text as it can be shown on a terminal: codes that move the cursor, colour it or turn the text
+/// round become `?`. Line breaks stay.
+pub fn plain(text: &str) -> Cow<'_, str> {
+    let harms = |c: char| {
+        let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        (c.is_control() && c != '\n') || turns
+    };
+    if text.contains(harms) { text.replace(harms, "?").into() } else { text.into() }
 }
 
 impl From<Cancelled> for Failure {
@@ -108,5 +141,19 @@ impl From<RunError> for Failure {
             RunError::Exists(_) | RunError::Collision { .. } => Self::usage(e.to_string()),
             RunError::Morph(_) | RunError::Place { .. } => Self::new(Self::FAILED, e.to_string()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_not_passed_on() {
+        assert_eq!(plain("a\x1b[31m\u{9b}1m\u{202e}\tb\nc"), "a?[31m?1m??b\nc");
+        assert_eq!(plain("plain ø"), "plain ø");
+        assert_eq!(paragraph("two\nlines"), "two lines");
+        let long = paragraph(&"x".repeat(1000));
+        assert!(long.len() == LONGEST + 3 && long.ends_with("..."));
     }
 }

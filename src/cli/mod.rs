@@ -8,6 +8,7 @@ mod compare;
 mod convert;
 mod failure;
 mod features;
+mod guard;
 mod inputs;
 mod morph;
 mod npy;
@@ -104,6 +105,10 @@ struct Making {
 /// Runs the command and gives its exit code.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
+    guard::guarded(move || work(cli))
+}
+
+fn work(cli: Cli) -> ExitCode {
     if let Some(n) = cli.common.threads {
         // the pool is made here first, so this cannot fail
         let _ = rayon::ThreadPoolBuilder::new().num_threads(n as usize).build_global();

@@ -48,12 +48,7 @@ pub fn write(
     let fail = |e: std::io::Error| {
         Failure::new(Failure::FAILED, format!("{}: cannot be written: {e}", path.display()))
     };
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    // readable by others, as any file a program makes; the umask still has its say
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut out = BufWriter::new(builder.tempfile_in(folder).map_err(fail)?);
+    let mut out = BufWriter::new(fieldgraft::place::beside(path).map_err(fail)?);
     out.write_all(&header(lattice.size)).map_err(fail)?;
     let [nx, ny, nz] = lattice.size;
     let mut values = vec![0.0; nx as usize * ny as usize];

@@ -70,6 +70,11 @@ fn skin(text: &str) -> Result<SkinEntry, String> {
 impl Run {
     /// Makes everything.
     pub fn run(self, watch: &Watch) -> Result<(), Failure> {
+        let name = self.recipe.display().to_string();
+        self.make(watch).map_err(|e| e.about(&name))
+    }
+
+    fn make(self, watch: &Watch) -> Result<(), Failure> {
         let text = read_text(&self.recipe)
             .map_err(|why| Failure::input(format!("{}: {why}", self.recipe.display())))?;
         let (mut recipe, source) = match kind(&text, &self.recipe) {
@@ -163,7 +168,7 @@ impl Run {
         for (key, name) in
             [("mesh", Some(&mesh)), ("picture", picture.as_ref())].into_iter().chain(moving)
         {
-            if name.is_some_and(|n| !stays_inside(n)) {
+            if name.is_some_and(|n| !stays_inside(n) || n.contains('\0')) {
                 let why = "leaves the output folder; give a plain relative name";
                 let problem = fieldgraft::recipe::Problem::new(format!("output.{key}"), why);
                 return Err(source.locate(problem).into());

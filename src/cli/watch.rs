@@ -1,7 +1,7 @@
 //! Progress on stderr, messages, and being interrupted.
 
-use super::Common;
-use super::failure::Failure;
+use super::failure::{Failure, plain};
+use super::{Common, guard};
 use fieldgraft::job::Job;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -29,6 +29,15 @@ impl Watch {
         let heard = stop.clone();
         // without a handler the system's own ends the program, which leaves no half file either
         let _ = ctrlc::set_handler(move || heard.store(true, Ordering::Relaxed));
+        if guard::is_watched() {
+            let orphan = stop.clone();
+            std::thread::spawn(move || {
+                while !guard::orphaned() {
+                    std::thread::sleep(Duration::from_millis(100));
+                }
+                orphan.store(true, Ordering::Relaxed);
+            });
+        }
         let bar = (std::io::stderr().is_terminal() && !common.quiet).then(|| {
             let bar = ProgressBar::new(TICKS);
             let style = "{msg:<24} [{bar:32}] {percent:>3}%  {eta} left";
@@ -77,7 +86,7 @@ impl Watch {
 
 fn tell(message: &str) {
     // nowhere is left to complain to if stderr is gone
-    let _ = writeln!(std::io::stderr(), "{message}");
+    let _ = writeln!(std::io::stderr(), "{}", plain(message));
 }
 
 /// Data to stdout; a reader that went away ends the program without a word.

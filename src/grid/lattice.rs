@@ -21,7 +21,7 @@ impl Lattice {
     pub fn covering(domain: &Aabb, step: f64) -> Self {
         let cells = (domain.size() / step).ceil() + 2.0;
         let origin = domain.centre() - cells * step * 0.5;
-        Self { origin, step, size: cells.to_array().map(|n| n.max(1.0) as u32 + 1) }
+        Self { origin, step, size: cells.to_array().map(|n| (n.max(1.0) as u32).saturating_add(1)) }
     }
 
     /// Position of a sample, mm.

@@ -72,6 +72,16 @@ pub(super) struct Fault {
     pub why: String,
 }
 
+impl Fault {
+    /// Without control characters, and no longer than a person reads: names in it are a file's.
+    pub fn fit_to_show(self) -> Self {
+        let fit = |text: String| -> String {
+            text.chars().take(400).map(|c| if c.is_control() { '?' } else { c }).collect()
+        };
+        Self { place: fit(self.place), why: fit(self.why) }
+    }
+}
+
 pub(super) type Parsed<T> = Result<T, Fault>;
 
 /// `Err` with a place and a cause.

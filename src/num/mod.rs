@@ -6,6 +6,8 @@ mod band;
 pub mod expr;
 mod interval;
 pub mod lsq;
+#[cfg(test)]
+pub(crate) mod mutate;
 pub mod near;
 
 pub use aabb::Aabb;

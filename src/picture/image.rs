@@ -109,15 +109,7 @@ pub(super) fn place(path: &Path, parts: &[&[u8]], force: bool) -> Result<(), Pic
 }
 
 fn write(path: &Path, parts: &[&[u8]], force: bool) -> io::Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    // Readable by others, as any file a program makes; the umask still has its say.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder)?;
+    let mut file = crate::place::beside(path)?;
     for part in parts {
         file.write_all(part)?;
     }

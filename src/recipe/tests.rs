@@ -1,3 +1,5 @@
+mod mutations;
+
 use super::{Auto, InnerEntry, MethodEntry, PlainOr, Recipe, UpAxis, word};
 use crate::weight::Ease;
 use std::path::Path;

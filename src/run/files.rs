@@ -1,6 +1,7 @@
 //! Names of results, and text files put in place whole.
 
 use super::{MOST_FRAMES, RunError, folder};
+use crate::place::beside;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
@@ -114,11 +115,7 @@ pub fn place_text(path: &Path, text: &str, force: bool) -> Result<(), RunError> 
         std::io::ErrorKind::AlreadyExists if !force => RunError::Exists(path.to_owned()),
         _ => RunError::Place { file: path.to_owned(), why },
     };
-    let mut builder = tempfile::Builder::new();
-    // readable by others, as any file a program makes; the umask still has its say
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder(path)).map_err(fail)?;
+    let mut file = beside(path).map_err(fail)?;
     file.write_all(text.as_bytes()).map_err(fail)?;
     let placed = if force { file.persist(path) } else { file.persist_noclobber(path) };
     placed.map(drop).map_err(|e| fail(e.error))

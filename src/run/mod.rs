@@ -10,13 +10,14 @@ mod predict;
 mod report;
 mod system;
 
+pub use crate::memory::{address_space, available_memory, peak_memory, reset_peak};
 pub use animation::{AnimationReport, MOST_FRAMES, Playing, Reel, animation_memory};
 pub use feet::Feet;
 pub use files::{Names, place_text, time_word};
 pub use frame::{FrameResult, Work, make};
 pub use predict::{Prediction, coarsening, predict, predict_one, probe};
 pub use report::{FrameReport, Report, Seconds, ShapeReport};
-pub use system::{Machine, available_memory, peak_memory, reset_peak};
+pub use system::Machine;
 
 use crate::job::{Cancelled, Job};
 use crate::mesh::{self, MeshError};

@@ -43,6 +43,8 @@ const CELLS_PER_SQUARE: f64 = 1.5;
 const TRIANGLES_PER_CELL: f64 = 4.0;
 // Bricks overlap the surface by their own size, and furniture has many edges.
 const BRICK_ROOM: f64 = 2.5;
+/// Triangles of a brick at most, every cell crossed.
+const MOST_A_BRICK: f64 = 512.0 * TRIANGLES_PER_CELL;
 /// Samples of a brick, and what is held beside them while it is meshed.
 const BRICK_BYTES: f64 = 512.0 * 4.0 + 256.0;
 /// A triangle and its half point, while the mesh is made, checked, written and read back.
@@ -89,6 +91,11 @@ pub fn predict_one(area: f64, lattice: &Lattice) -> Prediction {
 fn total(frames: u64, lattice: &Lattice, size: Size, shapes: f64) -> Prediction {
     let bricks: f64 =
         lattice.size.iter().map(|&n| (f64::from(n) / f64::from(BRICK)).ceil()).product();
+    // however much surface lies folded into it, the lattice holds no more
+    let size = Size {
+        active_bricks: size.active_bricks.min(bricks),
+        triangles: size.triangles.min(bricks * MOST_A_BRICK),
+    };
     let memory = BASE_BYTES
         + shapes
         + bricks * 16.0
@@ -101,7 +108,7 @@ fn total(frames: u64, lattice: &Lattice, size: Size, shapes: f64) -> Prediction 
         active_bricks: size.active_bricks as u64,
         triangles: size.triangles as u64,
         memory_bytes: memory as u64,
-        file_bytes: 84 + 50 * size.triangles as u64,
+        file_bytes: (84.0 + 50.0 * size.triangles) as u64,
     }
 }
 
@@ -147,7 +154,7 @@ pub fn probe(
         triangles: most.triangles as u64,
         memory_bytes: (fixed + most.active_bricks * BRICK_BYTES + most.triangles * TRIANGLE_BYTES)
             as u64,
-        file_bytes: 84 + 50 * most.triangles as u64,
+        file_bytes: (84.0 + 50.0 * most.triangles) as u64,
         ..*first
     })
 }

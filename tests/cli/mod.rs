@@ -10,6 +10,8 @@ mod compare;
 mod convert;
 /// What is wrong, and what is said about it.
 mod errors;
+/// Killed runs, full disks, too little memory.
+mod faults;
 /// `features suggest`: parts found, recipes written.
 mod features;
 /// `morph` and `run`: files, reports, limits.

@@ -2,7 +2,6 @@
 
 use crate::cli::failure::Failure;
 use fieldgraft::mesh::check_output;
-use std::fs::Permissions;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -106,12 +105,7 @@ pub fn to_file(
         let why = format!("{}: cannot be written: {e}", path.display());
         Failure::new(Failure::FAILED, why)
     };
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    // readable by others, as any file a program makes; the umask still has its say
-    #[cfg(unix)]
-    builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
-    let mut out = BufWriter::new(builder.tempfile_in(folder).map_err(fail)?);
+    let mut out = BufWriter::new(fieldgraft::place::beside(path).map_err(fail)?);
     write(&mut out).map_err(|e| match e {
         Stop::Io(e) => fail(e),
         Stop::Failure(e) => e,

@@ -19,7 +19,8 @@ use glam::{DAffine3, DVec3};
 use std::path::Path;
 
 /// Instances may multiply a mesh: at most this many triangles more than the file has bytes.
-const MOST_EXTRA: u64 = 8_000_000;
+/// A million takes a hundred megabytes.
+const MOST_EXTRA: u64 = 1_000_000;
 
 /// The scene in its own axes (Y up), scaled by `mm`.
 pub(super) fn read(bytes: &[u8], folder: &Path, mm: f64) -> Parsed<Soup> {
@@ -134,7 +135,7 @@ impl Reader<'_> {
             0..=3 => return Ok(()), // points and lines
             _ => return fault(at, format!("mode {mode}, expected 0 to 6")),
         }
-        let Some(&positions) = p.attributes.get("POSITION") else {
+        let Some(positions) = p.attributes.position else {
             return fault(at, "no POSITION");
         };
         if let Some(e) = p.extensions.keys().find(|e| e.contains("draco"))

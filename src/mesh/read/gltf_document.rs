@@ -64,13 +64,20 @@ pub(super) struct Mesh {
 
 #[derive(Deserialize)]
 pub(super) struct Primitive {
-    pub attributes: BTreeMap<String, usize>,
+    pub attributes: Attributes,
     #[serde(default)]
     pub indices: Option<usize>,
     #[serde(default)]
     pub mode: Option<u32>,
     #[serde(default)]
     pub extensions: BTreeMap<String, IgnoredAny>,
+}
+
+/// Only what is read: a map of all of them would take a hundred times the bytes they have in a file.
+#[derive(Deserialize)]
+pub(super) struct Attributes {
+    #[serde(default, rename = "POSITION")]
+    pub position: Option<usize>,
 }
 
 #[derive(Deserialize)]

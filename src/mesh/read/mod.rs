@@ -18,6 +18,7 @@ use super::{
     found::{Found, Polygons},
     weld::welded,
 };
+use crate::memory::available_memory;
 use std::{
     fs::{File, FileType, Metadata},
     io::{self, Read},
@@ -75,7 +76,7 @@ pub fn read(path: &Path, assume: Assume) -> Result<Loaded, MeshError> {
 fn load(bytes: &[u8], format: Format, folder: &Path, assume: Assume) -> Parsed<Loaded> {
     let up = assume.up.unwrap_or(format.up());
     let unit = assume.unit.unwrap_or(format.unit());
-    let (raw, kinds) = parse(bytes, format, folder, up, unit)?;
+    let (raw, kinds) = parse(bytes, format, folder, up, unit).map_err(Fault::fit_to_show)?;
     let (mesh, counts) = welded(&raw);
     let found = Found::after(&mesh, raw.points.len(), kinds, counts);
     Ok(Loaded { mesh, found, up, unit })
@@ -143,6 +144,10 @@ fn contents(path: &Path) -> Result<Vec<u8>, MeshError> {
     }
     let file = File::open(path).map_err(failed)?;
     let size = file.metadata().as_ref().map(Metadata::len).unwrap_or(0);
+    if let Some(free) = available_memory().filter(|free| size > free / 2) {
+        let why = format!("it has {size} bytes, more than half of the {free} that are free");
+        return Err(failed(io::Error::other(why)));
+    }
     let mut bytes = Vec::new();
     // A file may claim more than there is memory for; growing a vector by hand would abort.
     let room = usize::try_from(size).unwrap_or(usize::MAX);

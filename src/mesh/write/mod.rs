@@ -15,6 +15,7 @@ use super::{
     read::{Format, kind_name, parse},
     weld::welded,
 };
+use crate::place::beside;
 use std::{
     fmt::Display,
     fs,
@@ -200,12 +201,7 @@ fn same_welded(soup: &TriMesh, mesh: &TriMesh) -> Result<(), String> {
 /// Writes beside the place and renames into it, so that no half file is ever there.
 fn place(path: &Path, parts: &[&[u8]], force: bool) -> Result<(), MeshError> {
     let failed = |cause| MeshError::Io { path: path.into(), doing: "write", cause };
-    let mut beside = tempfile::Builder::new();
-    beside.prefix(".fieldgraft-").suffix(".part");
-    // Else the file would stay readable by its owner only, as temporary files are.
-    #[cfg(unix)]
-    beside.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = beside.tempfile_in(folder(path)).map_err(failed)?;
+    let mut file = beside(path).map_err(failed)?;
     for part in parts {
         file.write_all(part).map_err(failed)?;
     }

@@ -14,7 +14,7 @@ pub use row::{Best, COLUMNS, Column, Row, csv};
 pub use summary::{MEASURES, Measure, Summary};
 
 use super::files::{folder_of, place_text, time_word};
-use super::system::{Machine, reset_peak};
+use super::system::Machine;
 use super::{
     AnimationReport, FrameResult, Names, Playing, Reel, RunError, Settings, ShapeReport, Work,
     make, peak_memory,
@@ -22,6 +22,7 @@ use super::{
 use crate::check::Shell;
 use crate::field::Shared;
 use crate::job::{self, Cancelled, Job};
+use crate::memory::reset_peak;
 use crate::mesh::{self, TriMesh};
 use crate::morph::MorphError;
 use crate::num::Aabb;

@@ -66,8 +66,10 @@ impl Reader {
                 fail(format!("{shown} is this file; a morph cannot be made of itself")).into()
             );
         }
-        if let Err(why) = fs::metadata(&path) {
-            return Err(fail(format!("{shown} cannot be read: {why}")).into());
+        match fs::metadata(&path) {
+            Ok(about) if about.is_file() => {}
+            Ok(_) => return Err(fail(format!("{shown} is no regular file")).into()),
+            Err(why) => return Err(fail(format!("{shown} cannot be read: {why}")).into()),
         }
         let opened = self.open(&path)?;
         let got = opened.entry.kind();

@@ -1,0 +1,197 @@
+//! Runs that are killed, and places that cannot be written: no half file, and a plain word.
+
+use crate::util::{Folder, Random, block};
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.put("low.obj", &block([0.0, 0.0, 5.0], [10.0, 10.0, 5.0]));
+    folder.put("tall.obj", &block([0.0, 0.0, 15.0], [5.0, 5.0, 15.0]));
+    folder
+}
+
+/// Writes meshes, pictures, an animation, a recipe and a report.
+const MANY: [&str; 16] = [
+    "morph",
+    "low.obj",
+    "tall.obj",
+    "--method",
+    "linear",
+    "-t",
+    "0:1:0.1",
+    "-o",
+    "h-{t}.stl",
+    "--picture",
+    "h-{t}.png",
+    "--resolution",
+    "48",
+    "--threads",
+    "2",
+    "--force",
+];
+
+/// Whether a file is all there.
+fn whole(path: &Path) -> bool {
+    let bytes = fs::read(path).unwrap();
+    match path.extension().and_then(|e| e.to_str()) {
+        Some("stl") => {
+            let count = bytes.get(80..84).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
+            count.is_some_and(|n| bytes.len() == 84 + 50 * n as usize)
+        }
+        Some("png") => bytes.ends_with(b"IEND\xaeB`\x82"),
+        Some("json") => serde_json::from_slice::<serde_json::Value>(&bytes).is_ok(),
+        Some("toml") => String::from_utf8(bytes).unwrap().parse::<toml::Table>().is_ok(),
+        _ => true,
+    }
+}
+
+/// What is not whole, and no hidden file of a run that may still be cleared away.
+fn halves(folder: &Folder) -> Vec<String> {
+    let names = folder.names().into_iter().filter(|n| !n.starts_with(".fieldgraft-"));
+    names.filter(|n| !whole(&folder.join(n))).collect()
+}
+
+/// `FIELDGRAFT_KILLS=200` kills as often.
+#[cfg(unix)]
+#[test]
+fn a_killed_run_leaves_no_half_file_and_the_next_clears_up() {
+    let kills = std::env::var("FIELDGRAFT_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(6);
+    let folder = folder();
+    let mut random = Random::new(6);
+    let mut hidden = 0;
+    for _ in 0..kills {
+        let mut child =
+            folder.command(&MANY).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(random.below(1500) as u64));
+        // on Unix this is kill -9; the run may have ended already
+        let _ = child.kill();
+        child.wait().unwrap();
+        assert_eq!(halves(&folder), Vec::<String>::new());
+        hidden += folder.names().iter().filter(|n| n.starts_with(".fieldgraft-")).count();
+    }
+    println!("{kills} kills left {hidden} hidden files, each gone with the next run");
+    folder.put(".fieldgraft-4000000000-abc.part", "half");
+    folder.run(&MANY).ends(0);
+    let left: Vec<String> = folder.names().into_iter().filter(|n| n.starts_with('.')).collect();
+    if cfg!(target_os = "linux") {
+        assert_eq!(left, Vec::<String>::new());
+    }
+    assert_eq!(halves(&folder), Vec::<String>::new());
+    assert_eq!(folder.names().iter().filter(|n| n.ends_with(".stl")).count(), 11);
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupted_at_any_moment_it_says_so_and_clears_up() {
+    let folder = folder();
+    let mut random = Random::new(9);
+    for _ in 0..4 {
+        let child = folder.command(&MANY).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
+        let child = child.unwrap();
+        std::thread::sleep(Duration::from_millis(100 + random.below(600) as u64));
+        let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        let done = child.wait_with_output().unwrap();
+        let text = String::from_utf8_lossy(&done.stderr).into_owned();
+        let code = done.status.code();
+        // it may have been done already, or not have begun
+        let heard = code == Some(130) && text.contains("error: interrupted");
+        assert!(heard || code == Some(0) || code.is_none() || !sent.success(), "{code:?} {text}");
+        assert_eq!(halves(&folder), Vec::<String>::new());
+        assert!(!folder.names().iter().any(|n| n.starts_with('.')), "{:?}", folder.names());
+    }
+}
+
+/// Runs the command under a limit of the shell's.
+#[cfg(target_os = "linux")]
+fn limited(folder: &Folder, limit: &str, args: &[&str]) -> (Option<i32>, String) {
+    let line = format!("{limit}; exec \"$0\" \"$@\"");
+    let done = Command::new("sh")
+        .args(["-c", &line, env!("CARGO_BIN_EXE_fieldgraft")])
+        .args(args)
+        .env_remove("RUST_BACKTRACE")
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    (done.status.code(), String::from_utf8_lossy(&done.stderr).into_owned())
+}
+
+/// A limit on the size of files, its signal ignored, is a disk that is full at any byte.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_said_and_leaves_nothing() {
+    let folder = folder();
+    let before = folder.names();
+    for (args, named) in [
+        (&["convert", "low.obj", "x.stl", "--resolution", "48"][..], "x.stl"),
+        (&["convert", "low.obj", "x.npy", "--resolution", "48"], "x.npy"),
+        (&["convert", "low.obj", "x.glb", "--resolution", "48"], "x.glb"),
+        (&["picture", "low.obj", "-o", "x.png"], "x.png"),
+    ] {
+        let (code, text) = limited(&folder, "trap '' XFSZ; ulimit -f 2", args);
+        assert!(matches!(code, Some(1 | 3)), "{args:?}: {code:?} {text}");
+        assert!(text.contains("error: ") && text.contains(named), "{args:?}: {text}");
+        assert!(text.contains("File too large"), "{args:?}: {text}");
+        assert_eq!(folder.names(), before, "{args:?}");
+    }
+    // standard output on a device that is always full
+    let (code, text) = limited(&folder, "exec >/dev/full", &["schema"]);
+    assert!(code == Some(1) && text.contains("stdout: cannot be written"), "{code:?} {text}");
+}
+
+/// A real small disk, where one may be mounted; elsewhere it is said that it was skipped.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_of_memory() {
+    let folder = folder();
+    fs::create_dir(folder.join("disk")).unwrap();
+    let mount =
+        |args: &[&str]| Command::new(args[0]).args(&args[1..]).current_dir(folder.path()).output();
+    let mounted = mount(&["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", "disk"]);
+    if !mounted.is_ok_and(|m| m.status.success()) {
+        println!("skipped: no tmpfs may be mounted here");
+        return;
+    }
+    let ran = folder.run(&["convert", "low.obj", "disk/x.stl", "--resolution", "64"]);
+    let left: Vec<_> = fs::read_dir(folder.join("disk")).unwrap().flatten().collect();
+    let left: Vec<_> = left.iter().map(|e| e.file_name()).collect();
+    mount(&["umount", "disk"]).unwrap();
+    assert!(ran.code() == 1 || ran.code() == 3, "{ran}");
+    assert!(ran.stderr().contains("x.stl") && ran.stderr().contains("No space left"), "{ran}");
+    assert!(left.is_empty(), "{left:?}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_cannot_be_written_is_said() {
+    let folder = folder();
+    // nobody can make a file there, not even root
+    for place in ["/proc/x.stl", "/sys/x.stl", "gone/x.stl", "low.obj/x.stl"] {
+        let ran = folder.run(&["convert", "low.obj", place, "--resolution", "16"]);
+        assert!(matches!(ran.code(), 1..=3), "{ran}");
+        assert!(ran.stderr().contains("error: ") && ran.stderr().contains(place), "{ran}");
+        assert!(ran.stderr().lines().count() <= 6, "{ran}");
+    }
+    assert_eq!(folder.names(), ["low.obj", "tall.obj"]);
+}
+
+/// Whatever address space there is: a mesh, or a refusal, but no death.
+#[cfg(target_os = "linux")]
+#[test]
+fn too_little_memory_is_an_error_and_no_abort() {
+    let folder = folder();
+    let args = ["convert", "low.obj", "x.stl", "--resolution", "96", "--threads", "2", "--force"];
+    let mut refused = 0;
+    for mib in [24, 32, 48, 64, 96, 128, 192] {
+        let (code, text) = limited(&folder, &format!("ulimit -v {}", mib * 1024), &args);
+        assert!(matches!(code, Some(0 | 1 | 5)), "{mib} MiB: {code:?} {text}");
+        if code != Some(0) {
+            refused += 1;
+            assert!(text.contains("error: "), "{mib} MiB: {text}");
+            assert!(!folder.names().iter().any(|n| n.starts_with('.')), "{:?}", folder.names());
+        }
+    }
+    assert!(refused > 0, "all of these sizes were enough");
+}
