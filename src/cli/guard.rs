@@ -37,7 +37,10 @@ pub fn guarded(work: impl FnOnce() -> ExitCode) -> ExitCode {
 
 /// What is said of an error of our own.
 fn paragraph(info: &PanicHookInfo<'_>) -> String {
-    let what = info.payload_as_str().unwrap_or("unknown").lines().next().unwrap_or_default();
+    let payload = info.payload();
+    let what = payload.downcast_ref::<&str>().copied();
+    let what = what.or(payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("unknown");
+    let what = what.lines().next().unwrap_or_default();
     let at = info.location().map(|l| {
         let file = l.file().rsplit_once("src/").map_or(l.file(), |(_, file)| file);
         format!(" ({file}:{})", l.line())
