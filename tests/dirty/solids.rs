@@ -109,7 +109,7 @@ pub fn chair() -> TriMesh {
         for y in 0..7 {
             cells.insert([x, y, 6]);
             cells.insert([x, y, 7]);
-            if (x < 2 || x > 4) && (y < 2 || y > 4) {
+            if !(2..=4).contains(&x) && !(2..=4).contains(&y) {
                 cells.extend((0..6).map(|z| [x, y, z]));
             }
             if y > 4 {

@@ -29,7 +29,7 @@ fn strange(kind: usize, path: &Path) {
     }
 }
 
-fn args<'a>(file: &'a OsStr, text: bool) -> Vec<&'a OsStr> {
+fn args(file: &OsStr, text: bool) -> Vec<&OsStr> {
     let words: &[&str] = if text { &["run"] } else { &["convert", "--resolution", "8"] };
     let after: &[&str] = if text { &["-o", "out"] } else { &["out.stl"] };
     let all = words.iter().map(OsStr::new).chain([file]);
