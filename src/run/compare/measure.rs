@@ -12,11 +12,14 @@ use crate::run::FrameReport;
 use crate::scene::LiveShape;
 use glam::DVec3;
 use serde::Serialize;
+use std::sync::OnceLock;
 
 /// A parent on the lattice of the frames.
 pub(super) struct Parent {
     pub shell: Shell,
     pub about: ParentReport,
+    /// Its own measures, once a frame was this parent again.
+    own: OnceLock<Row>,
 }
 
 /// What is known of a parent.
@@ -54,7 +57,7 @@ impl Parent {
             area_mm2: health.area_mm2,
             min_wall_mm: thinnest_wall(&shell, job)?,
         };
-        Ok(Self { shell, about })
+        Ok(Self { shell, about, own: OnceLock::new() })
     }
 }
 
@@ -88,6 +91,27 @@ pub(super) fn mesh(
 ) -> Result<(), Cancelled> {
     job.stage("measure");
     pieces(row, shell.mesh());
+    // at its ends a morph is a parent, often to the last bit: those are measured once
+    let same = parents.iter().find(|p| p.shell.mesh() == shell.mesh());
+    match same.and_then(|p| p.own.get()) {
+        Some(known) => row.take(known),
+        None => alone(row, shell, parents, job)?,
+    }
+    if let Some(parent) = same {
+        parent.own.get_or_init(|| row.clone());
+    }
+    // from here on the frame before counts
+    if let Some(before) = before {
+        let apart = known(&shell.to(before, job)?.0, &before.to(shell, job)?.0);
+        let error = row.hausdorff_error_mm.unwrap_or(0.0);
+        row.hausdorff_error_mm = Some(error.max(apart.map_or(0.0, |a| a.over)));
+        (row.step_mm, row.mean_step_mm) = pair(apart);
+    }
+    Ok(())
+}
+
+/// The measures that do not depend on the frame before.
+fn alone(row: &mut Row, shell: &Shell, parents: &[Parent], job: &dyn Job) -> Result<(), Cancelled> {
     row.min_wall_mm = thinnest_wall(shell, job)?;
     let mut error: f64 = 0.0;
     let mut nearer: Option<Vec<f64>> = None;
@@ -107,11 +131,6 @@ pub(super) fn mesh(
         });
     }
     row.stray_mm = nearer.map(|d| d.into_iter().fold(0.0, f64::max)).filter(|d| d.is_finite());
-    if let Some(before) = before {
-        let apart = known(&shell.to(before, job)?.0, &before.to(shell, job)?.0);
-        error = error.max(apart.map_or(0.0, |a| a.over));
-        (row.step_mm, row.mean_step_mm) = pair(apart);
-    }
     row.hausdorff_error_mm = Some(error);
     Ok(())
 }

@@ -288,8 +288,15 @@ fn frames(
         row.seconds = made.mesh.is_some().then_some(s.morph + s.sample + s.mesh);
         let start = Instant::now();
         let shell = made.mesh.map(Shell::new);
+        let mut drawn = None;
         if let Some(shell) = &shell {
-            measure::mesh(&mut row, shell, parents, before.as_ref(), job)?;
+            // what of one is not for all cores is done beside the other
+            let (measured, picture) = rayon::join(
+                || measure::mesh(&mut row, shell, parents, before.as_ref(), job),
+                || render(shell.mesh(), &how.style),
+            );
+            measured?;
+            drawn = Some(picture?);
             row.gradient_error =
                 field.and_then(|f| measure::gradient_error(&*f, shell.mesh(), scene.lattice.step));
         }
@@ -297,8 +304,6 @@ fn frames(
         if let Some(shell) = shell.as_ref().filter(|_| how.meshes) {
             row.file = put(&mut row, shell.mesh(), how, job)?;
         }
-        job.stage("picture");
-        let drawn = shell.as_ref().map(|s| render(s.mesh(), &how.style)).transpose()?;
         reel.add(t, shell.as_ref().map(Shell::mesh), drawn.clone(), job)?;
         pictures.push(drawn);
         told(&row);

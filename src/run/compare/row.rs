@@ -69,7 +69,7 @@ pub struct Row {
     pub border_clipped: Option<bool>,
     /// Loose pieces that were dropped.
     pub crumbs: Option<u64>,
-    /// Seconds that the measures took.
+    /// Seconds that the check, the measures and the picture took.
     pub seconds_measures: Option<f64>,
     /// The mesh's file, when it was written.
     pub file: Option<String>,
@@ -78,6 +78,14 @@ pub struct Row {
 impl Row {
     /// Share of the volume from which on a piece is no speck.
     pub const LARGE: f64 = 0.005;
+
+    /// Takes over what was measured of the same mesh, whatever the frame before was.
+    pub(super) fn take(&mut self, known: &Self) {
+        self.min_wall_mm = known.min_wall_mm;
+        (self.hausdorff_to_a_mm, self.mean_to_a_mm) = (known.hausdorff_to_a_mm, known.mean_to_a_mm);
+        (self.hausdorff_to_b_mm, self.mean_to_b_mm) = (known.hausdorff_to_b_mm, known.mean_to_b_mm);
+        (self.stray_mm, self.hausdorff_error_mm) = (known.stray_mm, known.hausdorff_error_mm);
+    }
 
     /// Of a method that does not apply.
     pub(super) fn refused(method: &str, t: f64, why: &str) -> Self {
@@ -229,7 +237,7 @@ pub const COLUMNS: &[Column] = &[
         "",
         "Loose pieces dropped before anything was measured (--crumbs or output.crumbs; the same for every method)."
     ),
-    column!(seconds_measures, "s", "Time of the check and the measures."),
+    column!(seconds_measures, "s", "Time of the check, the measures and the picture."),
     Column {
         name: "file",
         unit: "",
