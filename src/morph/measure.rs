@@ -30,6 +30,8 @@ const LARGEST_SHARE: f64 = 3.5;
 const HALVINGS: u32 = 12;
 /// Ratio of the weights from which on a lesser shape is there whole: below it parts come and go.
 const WHOLE_FROM: f64 = 0.4;
+/// The same where it comes at once.
+const AT_ONCE_FROM: f64 = 0.3;
 /// Largest height of the space-time blend in units of the reach: near t = 0 and 1 the blend is weak,
 /// and the height that would keep the volume grows without bound.
 const HEIGHT_CAP: f64 = 4.0;
@@ -76,7 +78,11 @@ pub(super) fn measured(at: &Site<'_>, lam: &[f64], inner: Inner) -> Measured {
         Inner::Grow | Inner::Erode | Inner::SpaceTime => local.apart = 1.0,
         Inner::Merge | Inner::Union => {
             local.apart = 1.0;
-            local.reach = revealed(at.g, lam, local.reach);
+            // by even shares what grows in may be loose until it meets the rest; at once it rarely is
+            local.reach = match inner {
+                Inner::Merge => revealed(at.g, lam, local.reach),
+                _ => local.reach / AT_ONCE_FROM,
+            };
             if inner == Inner::Merge {
                 thin = thinning(at, lam, local.reach, wanted);
             }
@@ -252,8 +258,8 @@ pub(super) fn step(f: &Placed) -> DVec3 {
     2.0 * f.element.half / FEATURE_SIDE as f64
 }
 
-/// Whether shape `j` of k is inside in more than half of the slices of a feature's samples, along each
-/// axis.
+/// Whether shape `j` of k is inside in more than a third of the slices of a feature's samples, along each
+/// axis: elements may be wider than what they hold.
 pub(super) fn reaches_through(g: &[f64], k: usize, j: usize) -> bool {
     let side = FEATURE_SIDE;
     let mut seen = [[false; FEATURE_SIDE]; 3];
@@ -261,7 +267,7 @@ pub(super) fn reaches_through(g: &[f64], k: usize, j: usize) -> bool {
         let at = [n % side, n / side % side, n / (side * side)];
         at.iter().zip(&mut seen).for_each(|(&at, seen)| seen[at] = true);
     }
-    seen.iter().all(|axis| 2 * axis.iter().filter(|s| **s).count() > side)
+    seen.iter().all(|axis| 3 * axis.iter().filter(|s| **s).count() > side)
 }
 
 /// Measures the features of a hybrid, or the whole shapes over `domain` where it has none.
@@ -409,5 +415,29 @@ mod tests {
         };
         assert!(thin(0.5)[0] > 0.5, "{:?}", thin(0.5));
         assert_eq!(thin(6.0), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_lesser_shape_grows_in_by_even_shares_of_its_volume() {
+        // nine tenths of it lie within 10 mm of the dominant one, the rest up to 100 mm away
+        let far = |n: usize| if n < 900 { n as f64 / 90.0 } else { n as f64 - 899.0 };
+        let g: Vec<f64> = (0..1000).flat_map(|n| [far(n), -1.0]).collect();
+        for share in [0.2, 0.5, 0.8] {
+            let ratio = share * WHOLE_FROM;
+            let lam = [1.0 / (1.0 + ratio), ratio / (1.0 + ratio)];
+            let level = revealed(&g, &lam, 100.0) * ratio;
+            let there = (0..1000).filter(|&n| far(n) < level).count() as f64 / 1000.0;
+            assert!((there - share).abs() < 0.01, "{share}: {there}");
+        }
+        // from there on all of it
+        assert!(revealed(&g, &[0.6, 0.4], 100.0) * 0.4 / 0.6 >= 100.0);
+    }
+
+    #[test]
+    fn what_juts_in_does_not_reach_through() {
+        let at = |p: DVec3, low: f64| if p.z > low && p.x.abs() < 0.8 { -1.0 } else { 1.0 };
+        let g = |low: f64| cube(FEATURE_SIDE).map(|q| at(q, low)).collect::<Vec<_>>();
+        assert!(reaches_through(&g(-0.9), 1, 0));
+        assert!(!reaches_through(&g(0.6), 1, 0));
     }
 }

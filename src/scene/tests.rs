@@ -154,3 +154,32 @@ fn dominant_frames_are_those_of_the_heavier_shape() {
     // c ends at 21 in its own frame
     assert!(inside("dominant", 0.6, 20.0) && inside("c", 0.4, 18.0));
 }
+
+#[test]
+fn a_turned_mesh_has_the_field_of_the_mesh_turned() {
+    use crate::field::Field;
+    use crate::field::mesh::{MeshField, MeshOptions};
+    use crate::recipe::{GridEntry, ShapeEntry};
+    use glam::{DAffine3, DQuat, DVec3};
+    let file = Path::new("data/chairs/plank.stl");
+    let shift = DVec3::new(12.0, -7.0, 30.0);
+    let entry = ShapeEntry {
+        mesh: Some(file.to_owned()),
+        turn_deg: 33.0,
+        shift: shift.to_array(),
+        ..ShapeEntry::default()
+    };
+    let single = super::Single::open("p", entry, &GridEntry::default(), Path::new("")).unwrap();
+    let bounds = single.bounds();
+    let (field, _) = single.field(&Quiet).unwrap();
+    let mut mesh = crate::mesh::read(file, crate::mesh::Assume::default()).unwrap().mesh;
+    let turn = DQuat::from_rotation_z(33f64.to_radians());
+    mesh.transform(&DAffine3::from_rotation_translation(turn, shift));
+    let (expected, _) = MeshField::new(&mesh, &MeshOptions::default(), &Quiet).unwrap();
+    for i in 0..200u32 {
+        let part = |by: u32| f64::from(i * by % 199) / 199.0;
+        let p = bounds.min + bounds.size() * DVec3::new(part(17), part(59), part(101));
+        let (a, b) = (field.value(p), expected.value(p));
+        assert!((a - b).abs() < 1e-9, "{p}: {a} {b}");
+    }
+}

@@ -277,3 +277,30 @@ pub(super) fn windows(style: Style, kins: &[Kin]) -> bool {
 pub(super) fn bias(kins: &[Kin], candidate: &[usize]) -> f64 {
     kins.iter().zip(candidate).filter_map(|(kin, &o)| Some(kin.options.get(o)?.cost)).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn weights(rows: &[Course]) -> Vec<Vec<f64>> {
+        rows.iter().map(|r| r.at(0.0)).collect()
+    }
+
+    #[test]
+    fn a_part_is_taken_from_shapes_that_have_it_unless_most_weight_has_it_not() {
+        let owners = [false, true, true, true];
+        let rows = weights(&few(&[8.0, 3.0, 5.0, 2.0], &owners, 0));
+        assert_eq!(rows[0], [0.0, 0.0, 1.0, 0.0], "the heaviest that has it");
+        assert!(rows.iter().all(|r| r[0] == 0.0), "{rows:?}");
+        assert_eq!(rows.len(), 3 + 3, "each alone, and each two");
+        let without = weights(&few(&[12.0, 3.0, 5.0, 2.0], &owners, 0));
+        assert_eq!(without, [[1.0, 0.0, 0.0, 0.0]]);
+    }
+
+    #[test]
+    fn halves_change_in_their_half() {
+        let at = |from: f64| [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| half(from).at(t)[1]);
+        assert_eq!(at(0.0), [0.0, 0.5, 1.0, 1.0, 1.0]);
+        assert_eq!(at(0.5), [0.0, 0.0, 0.0, 0.5, 1.0]);
+    }
+}

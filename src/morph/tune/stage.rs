@@ -46,7 +46,7 @@ pub(super) struct Stage {
 const NEAR: f64 = 26.0;
 /// Samples this far outside, in cells, still connect: a member thinner than a cell falls between
 /// samples on its way.
-const SLACK: f64 = 0.15;
+const SLACK: f64 = 0.05;
 /// A foot ends within this share of the height from the lowest point, and as near to where it should.
 const FOOT: f64 = 0.03;
 
@@ -135,8 +135,8 @@ impl Stage {
         all.iter().sum::<f64>() / all.len().max(1) as f64
     }
 
-    /// Which shapes have these features' part: those that reach through more than half of an element
-    /// along each of its axes. What juts in from beside does not.
+    /// Which shapes have these features' part: those that reach through more than a third of an
+    /// element along each of its axes. What juts in from beside does not.
     pub fn owners(&self, features: &[usize]) -> Vec<bool> {
         let k = self.hybrid.shapes.len();
         let rows = || features.iter().filter_map(|&i| self.rows.get(i));

@@ -94,3 +94,41 @@ fn all_weight_on_one_shape_gives_it_back() {
         }
     }
 }
+
+/// The second table has no top: a leg alone.
+fn lacking() -> Plan {
+    struct Leg(crate::field::Shared);
+    impl crate::field::Field for Leg {
+        fn value(&self, p: DVec3) -> f64 {
+            // the part of the table below its top
+            self.0.value(p).max(p.z - 48.0)
+        }
+        fn bound(&self, b: &crate::num::Aabb) -> crate::num::Interval {
+            crate::num::Interval::ball(self.value(b.centre()), b.radius())
+        }
+        fn support(&self) -> crate::num::Aabb {
+            self.0.support()
+        }
+    }
+    let mut p = plan(2, Inner::Merge, Blend::Maps);
+    p.features.iter_mut().for_each(|f| f.offset = 0.0);
+    p.shapes[1].field = std::sync::Arc::new(Leg(p.shapes[1].field.clone()));
+    p
+}
+
+#[test]
+fn a_part_that_one_has_alone_goes_with_what_holds_it_and_is_there_half_way() {
+    let p = lacking();
+    let morph = Metamorphosis::new(p.clone()).unwrap();
+    let stages = [Stage::new(&morph, 0.5, 60.0, &Quiet).unwrap()];
+    assert_eq!(stages[0].owner(&[0]), Some(0), "only the first has a top");
+    assert_eq!(stages[0].owner(&[1]), None);
+    let kins = options::kins(&p, Style::Average, &stages);
+    assert_eq!(kins.len(), 1, "the top goes with the leg");
+    assert_eq!(kins[0].features, [1, 0]);
+    for o in &kins[0].options {
+        let first = o.course.as_ref().map_or(0.5, |c| c.at(0.5)[0]);
+        assert!(first >= 0.5, "a top would be missing");
+    }
+    assert!(kins[0].options.iter().any(|o| o.course.is_some()));
+}
