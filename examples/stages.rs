@@ -1,10 +1,14 @@
 //! Seconds of each stage from a mesh file to a mesh, as a line of JSON; what `benches/peers` times.
-//! `cargo run --release --example stages -- chair.obj 512 [--all]`; `gyroid` instead of a file is a
-//! gyroid in a ball. `--all` also takes the distance at every point of the lattice.
+//! `cargo run --release --example stages -- chair.obj 512 [--all] [--nets] [--dump FILE.npy]`; `gyroid`
+//! instead of a file is a gyroid in a ball. `--all` also takes the distance at every point of the
+//! lattice, `--nets` also runs fast-surface-nets on the same samples, `--dump` writes them (f32, z y x;
+//! what is farther than three steps from the surface is cut to that).
 
+use fast_surface_nets::ndshape::RuntimeShape;
+use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use fieldgraft::field::mesh::{MeshField, MeshOptions};
 use fieldgraft::field::{Field, Shared, sample::sample};
-use fieldgraft::grid::Lattice;
+use fieldgraft::grid::{Bricks, Lattice};
 use fieldgraft::iso::{Mesher, extract};
 use fieldgraft::job::Quiet;
 use fieldgraft::mesh::{Assume, read};
@@ -59,10 +63,44 @@ fn everywhere(field: &dyn Field, lattice: &Lattice) -> f64 {
     sums.sum()
 }
 
+/// All samples of the lattice, x fastest, cut to three steps.
+fn dense(bricks: &Bricks<f32>) -> Vec<f32> {
+    let Lattice { step, size: [nx, ny, nz], .. } = bricks.lattice;
+    let far = 3.0 * step as f32;
+    let mut all = vec![far; nx as usize * ny as usize * nz as usize];
+    for (n, row) in all.chunks_exact_mut(nx as usize).enumerate() {
+        let [j, k] = [n % ny as usize, n / ny as usize];
+        bricks.row([0, j as i64, k as i64], -far, far, row);
+        row.iter_mut().for_each(|v| *v = v.clamp(-far, far));
+    }
+    all
+}
+
+/// Writes samples as NumPy reads them.
+fn dump(path: &str, [nx, ny, nz]: [u32; 3], samples: &[f32]) -> std::io::Result<()> {
+    let about =
+        format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({nz}, {ny}, {nx}), }}");
+    let mut out = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    out.extend(format!("{about:<117}\n").bytes());
+    out.extend(samples.iter().flat_map(|v| v.to_le_bytes()));
+    std::fs::write(path, out)
+}
+
+/// Seconds that fast-surface-nets takes.
+fn nets(size: [u32; 3], samples: &[f32]) -> f64 {
+    let shape = RuntimeShape::<u32, 3>::new(size);
+    let start = Instant::now();
+    let mut mesh = SurfaceNetsBuffer::default();
+    surface_nets(samples, &shape, [0; 3], size.map(|n| n - 1), &mut mesh);
+    let seconds = start.elapsed().as_secs_f64();
+    assert!(!mesh.indices.is_empty(), "it makes a mesh");
+    seconds
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [file, cells, rest @ ..] = args.as_slice() else {
-        return Err("usage: stages FILE|gyroid CELLS [--all]".into());
+        return Err("usage: stages FILE|gyroid CELLS [--all] [--nets] [--dump FILE.npy]".into());
     };
     let cells: f64 = cells.parse()?;
     let mut clock = Instant::now();
@@ -86,13 +124,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sample_s = lap();
     let mesh = extract(&samples.bricks, Mesher::Cone, &Quiet)?;
     let extract_s = lap();
+    let option = |name: &str| rest.iter().position(|a| a == name);
+    let nets_s = option("--nets").map(|_| nets(lattice.size, &dense(&samples.bricks)));
+    if let Some(path) = option("--dump").and_then(|n| rest.get(n + 1)) {
+        dump(path, lattice.size, &dense(&samples.bricks))?;
+    }
+    lap();
     let peak = peak_memory().unwrap_or(0);
-    let all_s =
-        rest.contains(&"--all".to_owned()).then(|| (everywhere(&*field, &lattice), lap()).1);
-    let all_s = all_s.map_or("null".to_owned(), |s| s.to_string());
+    let all_s = option("--all").map(|_| (everywhere(&*field, &lattice), lap()).1);
+    let [all_s, nets_s] = [all_s, nets_s].map(|s| s.map_or("null".to_owned(), |s| s.to_string()));
     println!(
         "{{\"read\": {read_s}, \"field\": {field_s}, \"sample\": {sample_s}, \"extract\": {extract_s}, \
-         \"all_points\": {all_s}, \"triangles\": {}, \"peak_bytes\": {peak}}}",
+         \"all_points\": {all_s}, \"fast_surface_nets\": {nets_s}, \"triangles\": {}, \"peak_bytes\": {peak}}}",
         mesh.faces.len()
     );
     Ok(())

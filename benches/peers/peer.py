@@ -1,6 +1,7 @@
-"""One piece of work by another library, timed; prints {"seconds": s, "peak_bytes": b}.
+"""One piece of work by another library on two threads, timed; prints
+{"seconds": s, "peak_bytes": b, "size": what it made}.
 
-    peer.py TASK MESHES(.npz, comma-separated) CELLS
+    peer.py TASK FILES(.npz meshes or .npy samples, comma-separated) CELLS
 
 Only the work itself is timed: no imports, no reading but where the task is "files to file".
 """
@@ -8,20 +9,10 @@ Only the work itself is timed: no imports, no reading but where the task is "fil
 import json
 import resource
 import sys
+import tempfile
 import time
 
 import numpy as np
-
-
-def gyroid(cells):
-    """As examples/stages.rs has it."""
-    step = 100.0 / cells
-    x = np.arange(-50 - 4 * step, 50 + 4 * step, step)
-    x, y, z = np.meshgrid(x, x, x, indexing="ij")
-    k = 2 * np.pi / 20
-    f = np.sin(k * x) * np.cos(k * y) + np.sin(k * y) * np.cos(k * z) + np.sin(k * z) * np.cos(k * x)
-    field = np.maximum(f / (k * np.sqrt(3)), np.sqrt(x * x + y * y + z * z) - 50)
-    return field.astype(np.float32), step
 
 
 def load(name):
@@ -42,11 +33,12 @@ def grid_points(low, step, counts):
     return np.stack(np.meshgrid(*axes, indexing="ij"), -1)
 
 
-def write_stl(path, points, faces):
+def write_stl(points, faces):
     record = np.zeros(len(faces), dtype=[("n", "<3f4"), ("p", "<9f4"), ("a", "<u2")])
     record["p"] = points[faces].reshape(-1, 9)
-    with open(path, "wb") as out:
+    with tempfile.TemporaryFile(suffix=".stl") as out:
         out.write(b"\0" * 80 + np.uint32(len(faces)).tobytes() + record.tobytes())
+    return len(faces)
 
 
 def openvdb_level_set(mesh, step, band):
@@ -59,35 +51,46 @@ def openvdb_level_set(mesh, step, band):
     )
 
 
-def openvdb_band(meshes, cells, band):
+def openvdb_band(meshes, cells):
     _, step, _ = lattice(meshes, cells)
-    openvdb_level_set(meshes[0], step, 3.0)
+    return openvdb_level_set(meshes[0], step, 3.0).activeVoxelCount()
 
 
-def openvdb_mesh(field):
+def openvdb_mesh(samples):
+    """Samples beyond the band are its background, as in any level set."""
     import pyopenvdb as vdb
 
-    grid = vdb.FloatGrid(1.0)
-    grid.copyFromArray(field)
+    grid = vdb.FloatGrid(float(samples.max()))
+    grid.copyFromArray(samples)
+    grid.prune()
     start = time.perf_counter()
     points, quads = grid.convertToQuads(0.0)
-    return time.perf_counter() - start, len(points), len(quads)
+    return time.perf_counter() - start, len(quads)
 
 
-def vtk_mesh(field):
+def vtk_mesh(samples):
     import vtk
     from vtk.util.numpy_support import numpy_to_vtk
 
+    vtk.vtkSMPTools.Initialize(2)
     image = vtk.vtkImageData()
-    image.SetDimensions(field.shape)
-    image.GetPointData().SetScalars(numpy_to_vtk(field.ravel(order="F"), deep=True))
+    image.SetDimensions(samples.shape[::-1])
+    image.GetPointData().SetScalars(numpy_to_vtk(samples.ravel(), deep=True))
     edges = vtk.vtkFlyingEdges3D()
     edges.SetInputData(image)
     edges.SetValue(0, 0.0)
     edges.ComputeNormalsOff()
     start = time.perf_counter()
     edges.Update()
-    return time.perf_counter() - start
+    return time.perf_counter() - start, edges.GetOutput().GetNumberOfCells()
+
+
+def skimage_mesh(samples):
+    from skimage.measure import marching_cubes
+
+    start = time.perf_counter()
+    faces = marching_cubes(samples, 0.0)[1]
+    return time.perf_counter() - start, len(faces)
 
 
 def open3d_distances(mesh, at):
@@ -118,7 +121,7 @@ def pair_openvdb(meshes, cells):
     grid.copyFromArray(sums)
     points, quads = grid.convertToQuads(0.0)
     faces = np.vstack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-    write_stl("/tmp/peer.stl", points, faces)
+    return write_stl(points, faces)
 
 
 def pair_open3d(meshes, cells):
@@ -128,39 +131,45 @@ def pair_open3d(meshes, cells):
     at = grid_points(low, step, counts)
     mean = sum(0.5 * open3d_distances(mesh, at) for mesh in meshes)
     points, faces, _, _ = marching_cubes(mean, 0.0)
-    write_stl("/tmp/peer.stl", points.astype(np.float32), faces)
+    return write_stl(points.astype(np.float32), faces)
+
+
+MESHERS = {"openvdb-mesh": openvdb_mesh, "vtk-mesh": vtk_mesh, "skimage-mesh": skimage_mesh}
+WORK = {
+    "openvdb-band": openvdb_band,
+    "open3d-all": lambda meshes, _: open3d_distances(meshes[0], at).size,
+    "igl-all": lambda meshes, _: igl_distances(meshes[0], at).size,
+    "openvdb-pair": pair_openvdb,
+    "open3d-pair": pair_open3d,
+}
 
 
 def main():
-    task, names, cells = sys.argv[1], sys.argv[2], int(sys.argv[3])
-    meshes = [load(n) for n in names.split(",") if n != "-"]
-    if task in ("openvdb-mesh", "vtk-mesh"):
-        field, _ = gyroid(cells)
-        seconds = openvdb_mesh(field)[0] if task == "openvdb-mesh" else vtk_mesh(field)
+    global at
+    task, names, cells = sys.argv[1], sys.argv[2].split(","), int(sys.argv[3])
+    if task in MESHERS:
+        seconds, size = MESHERS[task](np.load(names[0]))
     else:
-        if task.startswith(("open3d", "igl")):
+        if task.endswith("-all"):
+            meshes = [load(n) for n in names]
             at = grid_points(*lattice(meshes, cells))
-        if "openvdb" in task:
+        if task.startswith("openvdb"):
             import pyopenvdb  # noqa: F401
-        if "open3d" in task:
+        if task.startswith("open3d"):
             import open3d  # noqa: F401
-        if "igl" in task:
+        if task.startswith("open3d-pair"):
+            import skimage.measure  # noqa: F401
+        if task.startswith("igl"):
             import igl  # noqa: F401
+        if not task.endswith("-pair"):
+            meshes = [load(n) for n in names]
         start = time.perf_counter()
-        match task:
-            case "openvdb-band":
-                openvdb_band(meshes, cells, 3.0)
-            case "open3d-all":
-                open3d_distances(meshes[0], at)
-            case "igl-all":
-                igl_distances(meshes[0], at)
-            case "openvdb-pair":
-                pair_openvdb(meshes, cells)
-            case "open3d-pair":
-                pair_open3d(meshes, cells)
+        if task.endswith("-pair"):
+            meshes = [load(n) for n in names]
+        size = WORK[task](meshes, cells)
         seconds = time.perf_counter() - start
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-    print(json.dumps({"seconds": seconds, "peak_bytes": peak}))
+    print(json.dumps({"seconds": seconds, "peak_bytes": peak, "size": int(size)}))
 
 
 main()

@@ -3,16 +3,18 @@
 //! points against a triangle at a time.
 
 use super::Bvh;
-use super::triangle::{LANES, Octet};
+use super::triangle::{LANES, Points};
+use super::wide::Open;
 use crate::num::Aabb;
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 /// Points that share a walk of the tree.
 const RUN: usize = 64;
 /// More candidates than this for a run cost more than a walk per eight points.
-const RUN_CAP: usize = 512;
+const RUN_CAP: usize = 768;
 /// More candidates than this for eight points cost more than a walk per point.
-const OCTET_CAP: usize = 192;
+const OCTET_CAP: usize = 512;
 
 /// Squared distance and slot of the nearest triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,15 +26,14 @@ pub struct Hit {
 }
 
 /// Lists kept from run to run.
-#[derive(Default)]
 struct Scratch {
-    stack: Vec<(f64, u32)>,
+    open: Open,
     run: Vec<u32>,
     octet: Vec<u32>,
     /// Squared distances of the run's candidates to the centres of its eight octets.
     centres: Vec<[f64; LANES]>,
     /// The triangle that was nearest to the last point searched for.
-    last: Option<u32>,
+    last: u32,
 }
 
 impl Bvh {
@@ -43,10 +44,7 @@ impl Bvh {
         if self.is_empty() {
             return out;
         }
-        let mut scratch = Scratch::default();
-        for (at, out) in at.chunks(RUN).zip(out.chunks_mut(RUN)) {
-            self.run(at, out, &mut scratch);
-        }
+        dispatch!(Level::new(), s => self.runs(s, at, &mut out));
         out
     }
 
@@ -60,81 +58,114 @@ impl Bvh {
         self.faces.get(hit.slot as usize).copied()
     }
 
-    fn run(&self, at: &[DVec3], out: &mut [Hit], s: &mut Scratch) {
-        if at.len() <= LANES || !self.gather_for(at, RUN_CAP, s) {
+    #[inline(always)]
+    fn runs<S: Simd>(&self, s: S, at: &[DVec3], out: &mut [Hit]) {
+        let mut lists = Scratch {
+            open: Open::with_capacity(64),
+            run: Vec::with_capacity(RUN_CAP + LANES),
+            octet: Vec::with_capacity(RUN_CAP + LANES),
+            centres: Vec::with_capacity(RUN_CAP + LANES),
+            last: u32::MAX,
+        };
+        for (at, out) in at.chunks(RUN).zip(out.chunks_mut(RUN)) {
+            self.run(s, at, out, &mut lists);
+        }
+    }
+
+    #[inline(always)]
+    fn run<S: Simd>(&self, s: S, at: &[DVec3], out: &mut [Hit], lists: &mut Scratch) {
+        if at.len() <= LANES || !self.gather_for(s, at, RUN_CAP, lists) {
             for (at, out) in at.chunks(LANES).zip(out.chunks_mut(LANES)) {
-                self.alone(at, out, s);
+                self.alone(s, at, out, lists);
             }
             return;
         }
-        let boxes: Vec<Aabb> = at.chunks(LANES).map(|p| Aabb::of(p.iter().copied())).collect();
-        let middles: Vec<DVec3> = boxes.iter().map(Aabb::centre).collect();
-        let octet = Octet::of(&middles);
-        s.centres.clear();
-        s.centres.extend(s.run.iter().map(|&i| octet.distances2(&self.tris[i as usize])));
+        let octets = at.len().div_ceil(LANES);
+        let mut boxes = [Aabb::EMPTY; LANES];
+        for (b, at) in boxes.iter_mut().zip(at.chunks(LANES)) {
+            *b = Aabb::of(at.iter().copied());
+        }
+        let mut middles = [DVec3::ZERO; LANES];
+        for (middle, b) in middles.iter_mut().zip(&boxes) {
+            *middle = b.centre();
+        }
+        let centres = Points::of(s, &middles[..octets]);
+        let mut nearest = f64x8::splat(s, f64::INFINITY);
+        lists.centres.clear();
+        for &i in &lists.run {
+            let d2 = centres.distances2(&self.tris[i as usize]);
+            nearest = nearest.min(d2);
+            lists.centres.push(d2.into());
+        }
         for (k, (at, out)) in at.chunks(LANES).zip(out.chunks_mut(LANES)).enumerate() {
-            let nearest = s.centres.iter().fold(f64::INFINITY, |m, d| m.min(d[k])).sqrt();
             // whatever is nearest to some point of the box is this near to its centre
-            let reach = nearest + 2.0 * boxes[k].radius() + 4.0 * self.slack(middles[k]);
+            let reach = nearest[k].sqrt() + 2.0 * boxes[k].radius() + 4.0 * self.slack(middles[k]);
             let reach2 = reach * reach;
-            s.octet.clear();
-            let near = s.run.iter().zip(&s.centres).filter(|(_, d)| d[k] <= reach2);
-            s.octet.extend(near.map(|(&i, _)| i));
-            self.measure(at, out, &s.octet);
+            lists.octet.clear();
+            for (&i, d2) in lists.run.iter().zip(&lists.centres) {
+                if d2[k] <= reach2 {
+                    lists.octet.push(i);
+                }
+            }
+            self.measure(s, at, out, &lists.octet);
         }
     }
 
     /// Eight points that share no candidates with others.
-    fn alone(&self, at: &[DVec3], out: &mut [Hit], s: &mut Scratch) {
-        if at.len() > 1 && self.gather_for(at, OCTET_CAP, s) {
-            self.measure(at, out, &s.run);
+    #[inline(always)]
+    fn alone<S: Simd>(&self, s: S, at: &[DVec3], out: &mut [Hit], lists: &mut Scratch) {
+        if at.len() > 1 && self.gather_for(s, at, OCTET_CAP, lists) {
+            self.measure(s, at, out, &lists.run);
             return;
         }
         for (&p, out) in at.iter().zip(out) {
-            let (distance2, slot) = self.closest_after(p, s);
+            let (distance2, slot) = self.closest_after(s, p, lists);
             *out = Hit { distance2, slot };
         }
     }
 
-    /// [`Bvh::closest`], no farther than the triangle found before.
-    fn closest_after(&self, p: DVec3, s: &mut Scratch) -> (f64, u32) {
-        let known = s.last.map(|slot| self.tris[slot as usize].distance2(p.x, p.y, p.z));
+    /// The nearest triangle, no farther than the one found before.
+    #[inline(always)]
+    fn closest_after<S: Simd>(&self, s: S, p: DVec3, lists: &mut Scratch) -> (f64, u32) {
+        let known = self.tris.get(lists.last as usize).map(|t| t.distance2(p.x, p.y, p.z));
         // a point that is no number has no distance
         let reach2 = known.map_or(f64::INFINITY, |d2| d2.min(f64::INFINITY));
-        let found = self.closest(p, reach2, &mut s.stack);
-        s.last = (found.1 != u32::MAX).then_some(found.1).or(s.last);
+        let found = self.wide.closest(s, p, (reach2, u32::MAX), self.slack(p), &mut lists.open);
+        if found.1 != u32::MAX {
+            lists.last = found.1;
+        }
         found
     }
 
-    /// Fills `s.run` with every triangle that can be nearest to one of the points; `false` if
+    /// Fills `lists.run` with every triangle that can be nearest to one of the points; `false` if
     /// they are more than `cap`.
-    fn gather_for(&self, at: &[DVec3], cap: usize, s: &mut Scratch) -> bool {
+    #[inline(always)]
+    fn gather_for<S: Simd>(&self, s: S, at: &[DVec3], cap: usize, lists: &mut Scratch) -> bool {
         if !at.iter().all(|p| p.is_finite()) {
             return false;
         }
         let b = Aabb::of(at.iter().copied());
         let middle = b.centre();
-        let distance = self.closest_after(middle, s).0.sqrt();
+        let distance = self.closest_after(s, middle, lists).0.sqrt();
         let reach = distance + b.radius() + 4.0 * self.slack(middle);
-        self.gather(&b, reach, cap, &mut s.stack, &mut s.run)
+        self.wide.gather(s, &b, reach, cap, &mut lists.open, &mut lists.run)
     }
 
     /// The nearest of some candidates for up to eight points.
-    fn measure(&self, at: &[DVec3], out: &mut [Hit], candidates: &[u32]) {
-        let octet = Octet::of(at);
-        let mut best = [f64::INFINITY; LANES];
-        let mut slot = [f64::NAN; LANES];
+    #[inline(always)]
+    fn measure<S: Simd>(&self, s: S, at: &[DVec3], out: &mut [Hit], candidates: &[u32]) {
+        let octet = Points::of(s, at);
+        let mut best = f64x8::splat(s, f64::INFINITY);
+        let mut slot = f64x8::splat(s, f64::NAN);
         for &i in candidates {
             let d2 = octet.distances2(&self.tris[i as usize]);
-            let id = f64::from(i);
-            for k in 0..LANES {
-                slot[k] = if d2[k] < best[k] { id } else { slot[k] };
-                best[k] = if d2[k] < best[k] { d2[k] } else { best[k] };
-            }
+            let nearer = d2.simd_lt(best);
+            slot = nearer.select(f64x8::splat(s, f64::from(i)), slot);
+            best = nearer.select(d2, best);
         }
-        for ((out, d2), slot) in out.iter_mut().zip(best).zip(slot) {
-            let slot = if slot.is_nan() { u32::MAX } else { slot as u32 };
-            *out = Hit { distance2: d2, slot };
+        for (k, out) in out.iter_mut().enumerate() {
+            let slot = if slot[k].is_nan() { u32::MAX } else { slot[k] as u32 };
+            *out = Hit { distance2: best[k], slot };
         }
     }
 }

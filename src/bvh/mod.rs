@@ -1,5 +1,6 @@
 //! Triangles in a tree of boxes: nearest point, many nearest points at once, winding number,
-//! and which triangles touch.
+//! and which triangles touch. Distances are taken in vectors of eight, with the same bits whatever
+//! the machine's vectors are.
 //!
 //! The tree's shape comes from `obvhs`, built in `f32` on a recentred unit box; the boxes are then
 //! made again in `f64` round the exact corners, so no query has to allow for `f32`.
@@ -12,6 +13,7 @@ mod rim;
 #[cfg(test)]
 mod tests;
 mod triangle;
+mod wide;
 mod winding;
 
 pub use batch::Hit;
@@ -25,6 +27,7 @@ use crate::num::Aabb;
 use glam::DVec3;
 use obvhs::{BvhBuildParams, bvh2::builder::build_bvh2_from_tris, triangle::Triangle};
 use triangle::Tri;
+use wide::Wide;
 
 /// One box of the tree: two children at `first` and `first + 1`, or `count` triangles from `first`.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +44,7 @@ pub struct Bvh {
     nodes: Vec<Node>,
     /// Triangles in leaf order: a triangle's place here is its slot.
     tris: Vec<Tri>,
+    wide: Wide,
     corners: Vec<[DVec3; 3]>,
     /// Which of the triangles given to [`Bvh::new`] sits in each slot.
     faces: Vec<u32>,
@@ -51,11 +55,25 @@ pub struct Bvh {
 impl Bvh {
     /// The tree over some triangles, all coordinates finite.
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
+        let mut bvh = Self::bare(triangles);
+        bvh.tris = bvh.corners.iter().map(|&t| Tri::new(t)).collect();
+        bvh.wide = Wide::new(&bvh.nodes, &bvh.tris);
+        bvh
+    }
+
+    /// The tree without what distances need.
+    fn bare(triangles: &[[DVec3; 3]]) -> Self {
         let bounds = Aabb::of(triangles.iter().flatten().copied());
         let magnitude =
             triangles.iter().flatten().fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
-        let mut bvh =
-            Self { nodes: vec![], tris: vec![], corners: vec![], faces: vec![], magnitude };
+        let mut bvh = Self {
+            nodes: vec![],
+            tris: vec![],
+            wide: Wide::default(),
+            corners: vec![],
+            faces: vec![],
+            magnitude,
+        };
         bvh.lay_out(&shape(triangles, &bounds), triangles);
         bvh.fit();
         bvh
@@ -63,12 +81,12 @@ impl Bvh {
 
     /// Number of triangles.
     pub fn len(&self) -> usize {
-        self.tris.len()
+        self.corners.len()
     }
 
     /// Whether there is nothing to query.
     pub fn is_empty(&self) -> bool {
-        self.tris.is_empty()
+        self.corners.is_empty()
     }
 
     /// The box round all triangles.
@@ -87,11 +105,10 @@ impl Bvh {
         while let Some((source, place)) = open.pop() {
             let node = from.nodes[source as usize];
             if node.is_leaf() {
-                let first = self.tris.len() as u32;
+                let first = self.corners.len() as u32;
                 for slot in node.first_index..node.first_index + node.prim_count {
                     let face = from.primitive_indices[slot as usize];
                     let corners = triangles[face as usize];
-                    self.tris.push(Tri::new(corners));
                     self.corners.push(corners);
                     self.faces.push(face);
                 }

@@ -4,24 +4,19 @@
 //! a misjudged side changes the result by round-off only. Every distance in this crate goes
 //! through [`Tri::distance2`], one point or eight at a time, so all queries agree exactly.
 
+use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::DVec3;
 
 /// Points measured at once by the batch kernel.
 pub(super) const LANES: usize = 8;
 
-/// A triangle A(0, 0), B(ab, 0), C(cx, cy) with cy >= 0 in the frame (u, v, n) at A.
+/// A triangle A(0, 0), B(ab, 0), C(cx, cy) with cy >= 0 in the frame (u, v, n) at A: the numbers
+/// of A, u, v and n, then ab, then unit direction and length of the sides from B and A to C.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Tri {
-    a: DVec3,
-    u: DVec3,
-    v: DVec3,
-    n: DVec3,
-    ab: f64,
-    /// Unit direction and length of the side from B to C.
-    bc: [f64; 3],
-    /// Unit direction and length of the side from A to C.
-    ac: [f64; 3],
-}
+pub(super) struct Tri([f64; NUMBERS]);
+
+/// Numbers of a triangle.
+const NUMBERS: usize = 19;
 
 /// Where a point lies relative to a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -64,22 +59,25 @@ impl Tri {
         let v = v.try_normalize().unwrap_or_else(|| u.any_orthonormal_vector());
         let ab = (b - a).dot(u);
         let (cx, cy) = ((c - a).dot(u), (c - a).dot(v));
-        Self { a, u, v, n: u.cross(v), ab, bc: direction(cx - ab, cy), ac: direction(cx, cy) }
+        let n = u.cross(v);
+        let ([bx, by, bl], [cx, cy, cl]) = (direction(cx - ab, cy), direction(cx, cy));
+        Self([
+            a.x, a.y, a.z, u.x, u.y, u.z, v.x, v.y, v.z, n.x, n.y, n.z, ab, bx, by, bl, cx, cy, cl,
+        ])
     }
 
     /// Squared distance.
     #[inline(always)]
     pub(super) fn distance2(&self, px: f64, py: f64, pz: f64) -> f64 {
-        let (rx, ry, rz) = (px - self.a.x, py - self.a.y, pz - self.a.z);
-        let x = rx * self.u.x + ry * self.u.y + rz * self.u.z;
-        let y = rx * self.v.x + ry * self.v.y + rz * self.v.z;
-        let z = rx * self.n.x + ry * self.n.y + rz * self.n.z;
-        let [bx, by, bl] = self.bc;
-        let [cx, cy, cl] = self.ac;
-        let q = x - self.ab;
+        let [ax, ay, az, ux, uy, uz, vx, vy, vz, nx, ny, nz, ab, bx, by, bl, cx, cy, cl] = self.0;
+        let (rx, ry, rz) = (px - ax, py - ay, pz - az);
+        let x = rx * ux + ry * uy + rz * uz;
+        let y = rx * vx + ry * vy + rz * vz;
+        let z = rx * nx + ry * ny + rz * nz;
+        let q = x - ab;
         let (along_b, perp_b) = (q * bx + y * by, y * bx - q * by);
         let (along_c, perp_c) = (x * cx + y * cy, x * cy - y * cx);
-        let over_a = x - clip(x, self.ab);
+        let over_a = x - clip(x, ab);
         let over_b = along_b - clip(along_b, bl);
         let over_c = along_c - clip(along_c, cl);
         let sides = least(
@@ -92,48 +90,130 @@ impl Tri {
 
     /// Height, foot and nearest point for `p`.
     pub(super) fn local(&self, p: DVec3) -> Local {
-        let r = p - self.a;
-        let (x, y, z) = (r.dot(self.u), r.dot(self.v), r.dot(self.n));
-        let [bx, by, bl] = self.bc;
-        let [cx, cy, cl] = self.ac;
-        let q = x - self.ab;
+        let [ax, ay, az, ux, uy, uz, vx, vy, vz, nx, ny, nz, ab, bx, by, bl, cx, cy, cl] = self.0;
+        let [a, u, v, n] =
+            [[ax, ay, az], [ux, uy, uz], [vx, vy, vz], [nx, ny, nz]].map(DVec3::from);
+        let r = p - a;
+        let (x, y, z) = (r.dot(u), r.dot(v), r.dot(n));
+        let q = x - ab;
         let inside = y.min(y * bx - q * by).min(x * cy - y * cx);
         let foot = if inside > 0.0 {
             [x, y]
         } else {
             let (b, c) = (clip(q * bx + y * by, bl), clip(x * cx + y * cy, cl));
-            let sides = [[clip(x, self.ab), 0.0], [self.ab + b * bx, b * by], [c * cx, c * cy]];
+            let sides = [[clip(x, ab), 0.0], [ab + b * bx, b * by], [c * cx, c * cy]];
             let far = |s: [f64; 2]| (s[0] - x).powi(2) + (s[1] - y).powi(2);
             sides.into_iter().fold(sides[0], |m, s| if far(s) < far(m) { s } else { m })
         };
-        Local { height: z, inside, point: self.a + self.u * foot[0] + self.v * foot[1] }
+        Local { height: z, inside, point: a + u * foot[0] + v * foot[1] }
     }
 }
 
-/// Eight points, coordinate by coordinate.
+/// Eight triangles, number by number.
+#[derive(Clone, Debug)]
+pub(super) struct Lanes([[f64; LANES]; NUMBERS]);
+
+/// A point in every lane, or eight points.
 #[derive(Clone, Copy)]
-pub(super) struct Octet {
-    pub x: [f64; LANES],
-    pub y: [f64; LANES],
-    pub z: [f64; LANES],
+pub(super) struct Points<S: Simd> {
+    x: f64x8<S>,
+    y: f64x8<S>,
+    z: f64x8<S>,
 }
 
-impl Octet {
+#[inline(always)]
+fn clip_lanes<S: Simd>(x: f64x8<S>, hi: f64x8<S>) -> f64x8<S> {
+    x.max(f64x8::splat(x.token(), 0.0)).min(hi)
+}
+
+/// Eight distances at once, [`Tri::distance2`] to the letter; `t` tells the lanes of a number of
+/// the triangle. What is not inlined here would lose the wide registers: no closures.
+#[inline(always)]
+fn distances2<S: Simd>(p: &Points<S>, t: impl Numbers<S>) -> f64x8<S> {
+    let zero = f64x8::splat(p.x.token(), 0.0);
+    let (rx, ry, rz) = (p.x - t.at(0), p.y - t.at(1), p.z - t.at(2));
+    let x = rx * t.at(3) + ry * t.at(4) + rz * t.at(5);
+    let y = rx * t.at(6) + ry * t.at(7) + rz * t.at(8);
+    let z = rx * t.at(9) + ry * t.at(10) + rz * t.at(11);
+    let ab = t.at(12);
+    let (bx, by, bl) = (t.at(13), t.at(14), t.at(15));
+    let (cx, cy, cl) = (t.at(16), t.at(17), t.at(18));
+    let q = x - ab;
+    let (along_b, perp_b) = (q * bx + y * by, y * bx - q * by);
+    let (along_c, perp_c) = (x * cx + y * cy, x * cy - y * cx);
+    let over_a = x - clip_lanes(x, ab);
+    let over_b = along_b - clip_lanes(along_b, bl);
+    let over_c = along_c - clip_lanes(along_c, cl);
+    let side_b = over_b * over_b + perp_b * perp_b;
+    let side_c = over_c * over_c + perp_c * perp_c;
+    let sides = (over_a * over_a + y * y).min(side_b.min(side_c));
+    let inside = y.min(perp_b.min(perp_c)).simd_gt(zero);
+    z * z + inside.select(zero, sides)
+}
+
+/// Where [`distances2`] reads a triangle's numbers from.
+trait Numbers<S: Simd> {
+    fn at(&self, n: usize) -> f64x8<S>;
+}
+
+/// One triangle, the same in all lanes.
+struct One<'a, S: Simd>(S, &'a [f64; NUMBERS]);
+
+impl<S: Simd> Numbers<S> for One<'_, S> {
+    #[inline(always)]
+    fn at(&self, n: usize) -> f64x8<S> {
+        f64x8::splat(self.0, self.1[n])
+    }
+}
+
+/// Eight triangles.
+struct Many<'a, S: Simd>(S, &'a [[f64; LANES]; NUMBERS]);
+
+impl<S: Simd> Numbers<S> for Many<'_, S> {
+    #[inline(always)]
+    fn at(&self, n: usize) -> f64x8<S> {
+        f64x8::simd_from(self.0, self.1[n])
+    }
+}
+
+impl Lanes {
+    /// Up to eight triangles, at least one; the last one fills the lanes left over.
+    pub(super) fn of(tris: &[Tri]) -> Self {
+        let of = |n: usize, lane: usize| tris[lane.min(tris.len() - 1)].0[n];
+        Self(std::array::from_fn(|n| std::array::from_fn(|lane| of(n, lane))))
+    }
+
+    /// Squared distances of a point (the same in all lanes).
+    #[inline(always)]
+    pub(super) fn distances2<S: Simd>(&self, s: S, p: &Points<S>) -> f64x8<S> {
+        distances2(p, Many(s, &self.0))
+    }
+}
+
+impl<S: Simd> Points<S> {
+    /// One point.
+    #[inline(always)]
+    pub(super) fn one(s: S, p: DVec3) -> Self {
+        Self { x: f64x8::splat(s, p.x), y: f64x8::splat(s, p.y), z: f64x8::splat(s, p.z) }
+    }
+
     /// The first points of `at`; what is missing repeats the last one.
-    pub(super) fn of(at: &[DVec3]) -> Self {
-        let pick = |i: usize| at.get(i).or(at.last()).copied().unwrap_or(DVec3::ZERO);
-        let p: [DVec3; LANES] = std::array::from_fn(pick);
-        Self { x: p.map(|p| p.x), y: p.map(|p| p.y), z: p.map(|p| p.z) }
+    #[inline(always)]
+    pub(super) fn of(s: S, at: &[DVec3]) -> Self {
+        let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            if let Some(p) = at.get(i).or(at.last()) {
+                (x[i], y[i], z[i]) = (p.x, p.y, p.z);
+            }
+        }
+        let lanes = |x| f64x8::simd_from(s, x);
+        Self { x: lanes(x), y: lanes(y), z: lanes(z) }
     }
 
     /// Squared distances to a triangle.
-    #[inline]
-    pub(super) fn distances2(&self, tri: &Tri) -> [f64; LANES] {
-        let mut d = [0.0; LANES];
-        for (i, d) in d.iter_mut().enumerate() {
-            *d = tri.distance2(self.x[i], self.y[i], self.z[i]);
-        }
-        d
+    #[inline(always)]
+    pub(super) fn distances2(&self, tri: &Tri) -> f64x8<S> {
+        distances2(self, One(self.x.token(), &tri.0))
     }
 }
 

@@ -152,6 +152,8 @@ struct Angles {
 }
 
 impl Angles {
+    const NONE: Self = Self { re: 1.0, im: 0.0, turns: 0.0 };
+
     fn add(&mut self, (re, im): (f64, f64)) {
         let (x, y) = (self.re * re - self.im * im, self.re * im + self.im * re);
         let size = x.abs().max(y.abs());
@@ -159,12 +161,14 @@ impl Angles {
         if size <= 0.0 || size.is_nan() {
             return;
         }
+        // far from where the next product could overflow or vanish nothing needs to be scaled
+        let size = if (1e-100..1e100).contains(&size) { 1.0 } else { size };
         if self.im >= 0.0 && im >= 0.0 && y < 0.0 {
             self.turns += 1.0;
         } else if self.im < 0.0 && im < 0.0 && (y > 0.0 || (y == 0.0 && x < 0.0)) {
             self.turns -= 1.0;
         }
-        (self.re, self.im) = (x / size, y / size);
+        (self.re, self.im) = if size == 1.0 { (x, y) } else { (x / size, y / size) };
     }
 
     fn total(&self) -> f64 {
@@ -175,7 +179,7 @@ impl Angles {
 impl Winding {
     /// The tree over oriented triangles with finite coordinates.
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
-        let bvh = Bvh::new(triangles);
+        let bvh = Bvh::bare(triangles);
         let dipoles = dipoles(&bvh);
         Self { bvh, dipoles }
     }
@@ -211,21 +215,21 @@ impl Winding {
 
     /// The winding number as the sum over all triangles.
     pub fn exact(&self, q: DVec3) -> f64 {
-        self.sum(0, self.bvh.len() as u32, q) / (4.0 * PI)
+        let mut angles = Angles::NONE;
+        self.sum(0, self.bvh.len() as u32, q, &mut angles);
+        2.0 * angles.total() / (4.0 * PI)
     }
 
-    fn sum(&self, first: u32, count: u32, q: DVec3) -> f64 {
+    fn sum(&self, first: u32, count: u32, q: DVec3, angles: &mut Angles) {
         let slots = first as usize..(first + count) as usize;
-        let mut angles = Angles { re: 1.0, im: 0.0, turns: 0.0 };
-        for t in &self.bvh.corners[slots] {
-            angles.add(half_angle(t.map(|p| p - q)));
+        for &[a, b, c] in &self.bvh.corners[slots] {
+            angles.add(half_angle([a - q, b - q, c - q]));
         }
-        2.0 * angles.total()
     }
 
     fn tree(&self, q: DVec3, beta: f64, stack: &mut Vec<u32>) -> f64 {
         let beta2 = beta * beta;
-        let mut total = 0.0;
+        let (mut total, mut angles) = (0.0, Angles::NONE);
         stack.clear();
         if !self.bvh.is_empty() {
             stack.push(0);
@@ -240,12 +244,12 @@ impl Winding {
             }
             let Node { first, count, .. } = self.bvh.nodes[index as usize];
             if count > 0 {
-                total += self.sum(first, count, q);
+                self.sum(first, count, q, &mut angles);
             } else {
                 stack.extend([first + 1, first]);
             }
         }
-        total / (4.0 * PI)
+        (total + 2.0 * angles.total()) / (4.0 * PI)
     }
 }
 
@@ -291,7 +295,7 @@ mod tests {
     #[test]
     fn angles_add_up_over_full_turns() {
         for step in [0.3f64, -0.3, 2.9, -2.9, 1.7] {
-            let mut sum = Angles { re: 1.0, im: 0.0, turns: 0.0 };
+            let mut sum = Angles::NONE;
             for n in 1..200 {
                 sum.add((step.cos() * 1e3, step.sin() * 1e3));
                 assert!((sum.total() - step * f64::from(n)).abs() < 1e-10);

@@ -18,6 +18,7 @@
 //! assert!(health.volume_mm3.is_some_and(|v| (v - 1.0 / 6.0).abs() < 1e-12));
 //! ```
 
+mod buckets;
 mod contact;
 pub mod distance;
 mod parts;
@@ -34,6 +35,7 @@ pub use wall::thinnest_wall;
 
 use crate::mesh::TriMesh;
 use crate::num::Aabb;
+use buckets::Buckets;
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -133,7 +135,7 @@ pub fn inspect(mesh: &TriMesh, options: &Options) -> Health {
         cavities: when_closed(pieces.cavities),
         open_edges: topology.open_edges as u64,
         degenerate_triangles: sizes.flat as u64,
-        duplicate_triangles: duplicates(&welded.faces) as u64,
+        duplicate_triangles: duplicates(&welded) as u64,
         printable: false,
         reasons: Vec::new(),
     };
@@ -195,17 +197,14 @@ fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
     2.0 * area([a, b, c]) <= 1e-30 + 1e-14 * longest.max((a - c).length_squared())
 }
 
-fn duplicates(faces: &[[u32; 3]]) -> usize {
-    let mut sorted: Vec<[u32; 3]> = faces
-        .par_iter()
-        .map(|f| {
-            let mut f = *f;
-            f.sort_unstable();
-            f
-        })
-        .collect();
-    sorted.par_sort_unstable();
-    sorted.windows(2).filter(|pair| pair[0] == pair[1]).count()
+fn duplicates(mesh: &Welded) -> usize {
+    let sorted = |f: &[u32; 3]| {
+        let mut f = *f;
+        f.sort_unstable();
+        (f[0], [f[1], f[2]])
+    };
+    let all = Buckets::new(mesh.points.len(), || mesh.faces.iter().map(sorted));
+    all.iter().flat_map(|from| from.windows(2)).filter(|pair| pair[0] == pair[1]).count()
 }
 
 fn reasons(health: &Health, topology: &Topology, sizes: &Sizes, astray: usize) -> Vec<String> {

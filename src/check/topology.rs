@@ -1,7 +1,7 @@
 //! How the triangles hang together: edges, fans round vertices, components.
 
+use super::buckets::Buckets;
 use super::weld::Welded;
-use rayon::prelude::*;
 
 /// Counts of everything a clean closed surface has none of, and its components.
 pub(super) struct Topology {
@@ -39,13 +39,14 @@ impl Topology {
     }
 }
 
-/// A directed edge: its undirected key and the corner it starts from, `3 * face + side`.
-type HalfEdge = (u64, u64);
+/// A directed edge: its end of the higher number, and the corner it starts from,
+/// `3 * face + side`. It stands in the bucket of its end of the lower number.
+type HalfEdge = (u32, u32);
 
 pub(super) fn topology(mesh: &Welded) -> Topology {
-    let halves = half_edges(&mesh.faces);
-    let start = |corner: u64| mesh.faces[corner as usize / 3][corner as usize % 3];
-    let end = |corner: u64| start(following(corner));
+    let halves = half_edges(mesh);
+    let start = |corner: u32| mesh.faces[corner as usize / 3][corner as usize % 3];
+    let end = |corner: u32| start(following(corner));
     let mut t = Topology {
         edges: 0,
         open_edges: 0,
@@ -61,7 +62,7 @@ pub(super) fn topology(mesh: &Welded) -> Topology {
     };
     let mut corners = Forest::new(mesh.faces.len() * 3);
     let mut faces = Forest::new(mesh.faces.len());
-    for edge in halves.chunk_by(|a, b| a.0 == b.0) {
+    for edge in halves.iter().flat_map(|from| from.chunk_by(|a, b| a.0 == b.0)) {
         let sum: i64 = edge.iter().map(|h| if start(h.1) < end(h.1) { 1 } else { -1 }).sum();
         t.edges += 1;
         t.open_edges += usize::from(edge.len() == 1);
@@ -87,28 +88,15 @@ pub(super) fn topology(mesh: &Welded) -> Topology {
 }
 
 /// The next corner of the same face.
-fn following(corner: u64) -> u64 {
+fn following(corner: u32) -> u32 {
     if corner % 3 == 2 { corner - 2 } else { corner + 1 }
 }
 
-fn half_edges(faces: &[[u32; 3]]) -> Vec<HalfEdge> {
-    let sides = |(i, f): (usize, &[u32; 3])| {
-        [(f[0], f[1]), (f[1], f[2]), (f[2], f[0])].into_iter().enumerate().map(
-            move |(k, (a, b))| {
-                (u64::from(a.min(b)) << 32 | u64::from(a.max(b)), 3 * i as u64 + k as u64)
-            },
-        )
+fn half_edges(mesh: &Welded) -> Buckets<HalfEdge> {
+    let sides = |(i, &[a, b, c]): (u32, &[u32; 3])| {
+        [(a, b, 0), (b, c, 1), (c, a, 2)].map(|(a, b, k)| (a.min(b), (a.max(b), 3 * i + k)))
     };
-    let mut halves: Vec<HalfEdge> = faces
-        .par_iter()
-        .enumerate()
-        .flat_map_iter(|x| {
-            let ((i, f), sides) = (x, &sides);
-            sides((i, f)).collect::<Vec<_>>()
-        })
-        .collect();
-    halves.par_sort_unstable();
-    halves
+    Buckets::new(mesh.points.len(), || (0..).zip(&mesh.faces).flat_map(sides))
 }
 
 fn count_fans(mesh: &Welded, corners: &mut Forest, t: &mut Topology) {

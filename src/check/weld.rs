@@ -1,6 +1,6 @@
 //! Points joined where their coordinates are the same bits.
 
-use crate::mesh::TriMesh;
+use crate::mesh::{TriMesh, twins};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -27,17 +27,7 @@ pub(super) fn weld(mesh: &TriMesh) -> Welded {
             f.iter().for_each(|&v| used[v as usize] = true);
         }
     }
-    let bits = |v: u32| (mesh.points[v as usize] + 0.0).to_array().map(f64::to_bits);
-    let mut order: Vec<u32> = (0..total as u32).filter(|&v| used[v as usize]).collect();
-    order.par_sort_unstable_by_key(|&v| (bits(v), v));
-    // The first of each run of equals stands for the run.
-    let mut first: Vec<u32> = (0..total as u32).collect();
-    for pair in 1..order.len() {
-        let (a, b) = (order[pair - 1], order[pair]);
-        if bits(a) == bits(b) {
-            first[b as usize] = first[a as usize];
-        }
-    }
+    let first = twins(&mesh.points, &used);
     let mut points = Vec::new();
     let mut name = vec![0_u32; total];
     for v in 0..total {

@@ -39,6 +39,7 @@ pub use error::MeshError;
 pub use found::Found;
 pub use frame::{Assume, Unit, UnknownWord, Up};
 pub use read::{Loaded, read};
+pub(crate) use weld::twins;
 pub use weld::{snap, weld};
 pub use write::{FlipBook, Motion, check_output, write, write_motion};
 

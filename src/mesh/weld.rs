@@ -58,8 +58,25 @@ fn has_three(f: &[u32; 3]) -> bool {
     f[0] != f[1] && f[1] != f[2] && f[2] != f[0]
 }
 
+/// Whether no two points that faces use are one when rounded to f32.
+pub(super) fn distinct_in_f32(mesh: &TriMesh) -> bool {
+    let mut used = vec![false; mesh.points.len()];
+    for &v in mesh.faces.iter().flatten() {
+        used[v as usize] = true;
+    }
+    let single = |&i: &u32| bits(mesh.points[i as usize].as_vec3().as_dvec3());
+    let all = (0..mesh.points.len() as u32).into_par_iter().filter(|&i| used[i as usize]);
+    let mut keys: Vec<(u64, u32)> = all.map(|i| (hash(single(&i)), i)).collect();
+    keys.par_sort_unstable();
+    keys.chunk_by(|a, b| a.0 == b.0).filter(|run| run.len() > 1).all(|run| {
+        let mut here: Vec<[u64; 3]> = run.iter().map(|(_, i)| single(i)).collect();
+        here.sort_unstable();
+        here.windows(2).all(|pair| pair[0] != pair[1])
+    })
+}
+
 /// For each used point the first used point at the same position (itself, if there is no earlier).
-fn twins(points: &[DVec3], used: &[bool]) -> Vec<u32> {
+pub(crate) fn twins(points: &[DVec3], used: &[bool]) -> Vec<u32> {
     let mut keys: Vec<(u64, u32)> = (0..points.len() as u32)
         .into_par_iter()
         .filter(|&i| used[i as usize])

@@ -79,8 +79,22 @@ impl Hybrid {
         }
     }
 
+    /// Whether a shape has no weight in any feature, and the morphing function so never reads it.
+    fn idle(&self, j: usize) -> bool {
+        let none = || match &self.features[..] {
+            [] => self.lam[j] == 0.0,
+            all => all.iter().all(|f| f.lam[j] == 0.0),
+        };
+        !matches!(self.mix, Mix::SpaceTime(_)) && none()
+    }
+
     /// Values and weights of the shapes under the blended maps: y_j = Σ w_i T_ij(x), g_j = f_j(y_j).
     pub fn look_up(&self, at: &[DVec3], out: &mut Looked) {
+        self.look_up_some(at, out, |_| true);
+    }
+
+    /// [`Hybrid::look_up`] of the shapes that are wanted; the values of the others mean nothing.
+    fn look_up_some(&self, at: &[DVec3], out: &mut Looked, wanted: impl Fn(usize) -> bool) {
         let (k, n) = self.counts();
         out.g.resize(at.len() * k, 0.0);
         out.lam.resize(at.len() * k, 0.0);
@@ -99,7 +113,7 @@ impl Hybrid {
                 }
             }
         }
-        for (j, shape) in self.shapes.iter().enumerate() {
+        for (j, shape) in self.shapes.iter().enumerate().filter(|&(j, _)| wanted(j)) {
             for (r, (y, &p)) in y.iter_mut().zip(at).enumerate() {
                 *y = if n == 0 { p } else { self.blended(j, p, &out.w[r * n..(r + 1) * n]) };
             }
@@ -150,7 +164,7 @@ impl Hybrid {
     fn values_by_maps(&self, at: &[DVec3], out: &mut [f64]) {
         let (k, n) = self.counts();
         let mut l = Looked::default();
-        self.look_up(at, &mut l);
+        self.look_up_some(at, &mut l, |j| !self.idle(j));
         for (r, f) in out.iter_mut().enumerate() {
             let row = r * k..(r + 1) * k;
             let feature = r * n..(r + 1) * n;
@@ -219,7 +233,11 @@ impl Hybrid {
         let mut lam = Vec::with_capacity(k);
         for j in 0..k {
             let thin = convex(&|f| f.thin.get(j).copied().unwrap_or(0.0), &mut order);
-            g.push(self.shapes[j].bound(&self.image(j, b, &w, &mut order)) + thin);
+            g.push(if self.idle(j) {
+                Interval::ALL
+            } else {
+                self.shapes[j].bound(&self.image(j, b, &w, &mut order)) + thin
+            });
             lam.push(convex(&|f| f.lam[j], &mut order).clamp(0.0, 1.0));
         }
         let local = LocalRange {

@@ -1,0 +1,268 @@
+//! The tree as points walk it: nodes of eight boxes, leaves of up to eight triangles, both in
+//! lanes, so that a step of the walk is one pass of vector arithmetic.
+//!
+//! The arithmetic is that of [`Tri::distance2`], operation by operation, and never fused: whatever
+//! the width of the machine's vectors, a distance comes out with the same bits.
+
+use super::Node;
+use super::triangle::{LANES, Lanes, Points, Tri};
+use crate::num::Aabb;
+use fearless_simd::{Simd, f64x8, prelude::*};
+use glam::DVec3;
+
+/// Set in a child's number where it is a pack and not a node.
+const PACK: u32 = 1 << 31;
+
+/// Eight boxes. Lanes without a child are empty boxes, infinitely far from everything.
+#[derive(Clone, Debug)]
+struct Eight {
+    lo: [[f64; LANES]; 3],
+    hi: [[f64; LANES]; 3],
+    child: [u32; LANES],
+}
+
+/// Up to eight triangles; the last one fills the lanes left over.
+#[derive(Clone, Debug)]
+struct Pack {
+    lanes: Lanes,
+    first: u32,
+    count: u32,
+}
+
+/// The tree of eights over the triangles of a [`super::Bvh`].
+#[derive(Clone, Debug, Default)]
+pub(super) struct Wide {
+    nodes: Vec<Eight>,
+    packs: Vec<Pack>,
+    root: Option<u32>,
+}
+
+/// What a walk still has to look at: squared distance of the box, and its child.
+pub(super) type Open = Vec<(f64, u32)>;
+
+impl Eight {
+    const NONE: Self = Self {
+        lo: [[f64::INFINITY; LANES]; 3],
+        hi: [[f64::NEG_INFINITY; LANES]; 3],
+        child: [PACK; LANES],
+    };
+
+    fn set(&mut self, lane: usize, b: &Aabb, child: u32) {
+        for a in 0..3 {
+            self.lo[a][lane] = b.min[a];
+            self.hi[a][lane] = b.max[a];
+        }
+        self.child[lane] = child;
+    }
+
+    /// Squared distances of the boxes from a box.
+    #[inline(always)]
+    fn gaps2<S: Simd>(&self, s: S, lo: DVec3, hi: DVec3) -> f64x8<S> {
+        let zero = f64x8::splat(s, 0.0);
+        let axis = |a: usize| {
+            let below = f64x8::from_slice(s, &self.lo[a]) - f64x8::splat(s, hi[a]);
+            let above = f64x8::splat(s, lo[a]) - f64x8::from_slice(s, &self.hi[a]);
+            below.max(above).max(zero)
+        };
+        let (x, y, z) = (axis(0), axis(1), axis(2));
+        x * x + y * y + z * z
+    }
+}
+
+impl Wide {
+    /// From the binary tree and its triangles in slots.
+    pub(super) fn new(nodes: &[Node], tris: &[Tri]) -> Self {
+        let mut wide = Self::default();
+        if !nodes.is_empty() {
+            let nodes = halved(nodes);
+            let spans = spans(&nodes);
+            wide.root = Some(wide.build(&nodes, &spans, tris));
+        }
+        wide
+    }
+
+    fn build(&mut self, nodes: &[Node], spans: &[[u32; 2]], tris: &[Tri]) -> u32 {
+        let small = |i: usize| spans[i][1] as usize <= LANES;
+        if small(0) {
+            return self.pack(spans[0], tris);
+        }
+        self.nodes.push(Eight::NONE);
+        let mut open = vec![(0usize, 0usize)];
+        while let Some((place, top)) = open.pop() {
+            let mut children = vec![top];
+            // the largest child is opened until there are eight
+            while children.len() < LANES {
+                let area = |i: usize| half_area(&nodes[i].bounds);
+                let large = (0..children.len()).filter(|&c| !small(children[c]));
+                let Some(c) =
+                    large.max_by(|&c, &d| area(children[c]).total_cmp(&area(children[d])))
+                else {
+                    break;
+                };
+                let first = nodes[children[c]].first as usize;
+                children[c] = first;
+                children.insert(c + 1, first + 1);
+            }
+            for (lane, &c) in children.iter().enumerate() {
+                let child = if small(c) {
+                    self.pack(spans[c], tris)
+                } else {
+                    open.push((self.nodes.len(), c));
+                    self.nodes.push(Eight::NONE);
+                    self.nodes.len() as u32 - 1
+                };
+                self.nodes[place].set(lane, &nodes[c].bounds, child);
+            }
+        }
+        0
+    }
+
+    fn pack(&mut self, [first, count]: [u32; 2], tris: &[Tri]) -> u32 {
+        let all = &tris[first as usize..(first + count) as usize];
+        self.packs.push(Pack { lanes: Lanes::of(all), first, count });
+        PACK | (self.packs.len() as u32 - 1)
+    }
+
+    /// Least squared distance up to that of `known`, and its slot (`u32::MAX` for none). The result
+    /// is the minimum over all triangles exactly: pruning leaves room for round-off.
+    #[inline(always)]
+    pub(super) fn closest<S: Simd>(
+        &self,
+        s: S,
+        p: DVec3,
+        known: (f64, u32),
+        slack: f64,
+        open: &mut Open,
+    ) -> (f64, u32) {
+        if !p.is_finite() {
+            return known;
+        }
+        // an empty lane is infinitely far, and is not looked at even so
+        let limit = |d2: f64| (d2.sqrt() + slack).powi(2).min(f64::MAX);
+        let (mut best, mut slot) = known;
+        let mut edge = limit(best);
+        let lanes = Points::one(s, p);
+        open.clear();
+        open.extend(self.root.map(|root| (0.0, root)));
+        while let Some((d2, child)) = open.pop() {
+            if d2 > edge {
+                continue;
+            }
+            if child & PACK == 0 {
+                let node = &self.nodes[child as usize];
+                open_near(open, node.gaps2(s, p, p), edge, &node.child);
+                continue;
+            }
+            let pack = &self.packs[(child & !PACK) as usize];
+            let d2 = pack.lanes.distances2(s, &lanes);
+            let least = f64x8::splat(s, best);
+            let mut bits =
+                if slot == u32::MAX { d2.simd_le(least) } else { d2.simd_lt(least) }.to_bitmask();
+            let d2: [f64; LANES] = d2.into();
+            while bits != 0 {
+                let lane = bits.trailing_zeros();
+                bits &= bits - 1;
+                let d2 = d2[lane as usize];
+                if d2 < best || slot == u32::MAX {
+                    (best, slot) = (d2, pack.first + lane.min(pack.count - 1));
+                    edge = limit(best);
+                }
+            }
+        }
+        (best, slot)
+    }
+
+    /// Slots of the packs within `reach` of a box; `false` as soon as they are more than `cap`.
+    #[inline(always)]
+    pub(super) fn gather<S: Simd>(
+        &self,
+        s: S,
+        b: &Aabb,
+        reach: f64,
+        cap: usize,
+        open: &mut Open,
+        out: &mut Vec<u32>,
+    ) -> bool {
+        out.clear();
+        open.clear();
+        open.extend(self.root.map(|root| (0.0, root)));
+        let reach2 = (reach * reach).min(f64::MAX);
+        while let Some((_, child)) = open.pop() {
+            if child & PACK == 0 {
+                let node = &self.nodes[child as usize];
+                let mut bits =
+                    node.gaps2(s, b.min, b.max).simd_le(f64x8::splat(s, reach2)).to_bitmask();
+                while bits != 0 {
+                    let lane = bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
+                    open.push((0.0, node.child[lane]));
+                }
+                continue;
+            }
+            let pack = &self.packs[(child & !PACK) as usize];
+            out.extend(pack.first..pack.first + pack.count);
+            if out.len() > cap {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+/// Puts the children that are near enough on the pile, the nearest on top.
+#[inline(always)]
+fn open_near<S: Simd>(open: &mut Open, d2: f64x8<S>, edge: f64, child: &[u32; LANES]) {
+    let mut bits = d2.simd_le(f64x8::splat(d2.token(), edge)).to_bitmask();
+    let d2: [f64; LANES] = d2.into();
+    let from = open.len();
+    while bits != 0 {
+        let lane = bits.trailing_zeros() as usize;
+        bits &= bits - 1;
+        let one = (d2[lane], child[lane]);
+        let mut at = open.len();
+        open.push(one);
+        while at > from && open[at - 1].0 < one.0 {
+            open[at] = open[at - 1];
+            at -= 1;
+        }
+        open[at] = one;
+    }
+}
+
+/// The nodes, with no leaf of more triangles than there are lanes.
+fn halved(nodes: &[Node]) -> Vec<Node> {
+    let mut nodes = nodes.to_vec();
+    let mut i = 0;
+    while i < nodes.len() {
+        let node = nodes[i];
+        if node.count as usize > LANES {
+            let half = node.count / 2;
+            let first = nodes.len() as u32;
+            nodes.push(Node { count: half, ..node });
+            nodes.push(Node { first: node.first + half, count: node.count - half, ..node });
+            nodes[i] = Node { first, count: 0, ..node };
+        }
+        i += 1;
+    }
+    nodes
+}
+
+/// First slot and number of triangles under each node.
+fn spans(nodes: &[Node]) -> Vec<[u32; 2]> {
+    let mut spans = vec![[0; 2]; nodes.len()];
+    for (i, node) in nodes.iter().enumerate().rev() {
+        let first = node.first as usize;
+        spans[i] = if node.count > 0 {
+            [node.first, node.count]
+        } else {
+            let [a, b] = [spans[first], spans[first + 1]];
+            [a[0].min(b[0]), a[1] + b[1]]
+        };
+    }
+    spans
+}
+
+fn half_area(b: &Aabb) -> f64 {
+    let s = b.size();
+    s.x * s.y + s.y * s.z + s.z * s.x
+}
