@@ -92,21 +92,14 @@ fn following(corner: u64) -> u64 {
 }
 
 fn half_edges(faces: &[[u32; 3]]) -> Vec<HalfEdge> {
-    let sides = |(i, f): (usize, &[u32; 3])| {
-        [(f[0], f[1]), (f[1], f[2]), (f[2], f[0])].into_iter().enumerate().map(
-            move |(k, (a, b))| {
-                (u64::from(a.min(b)) << 32 | u64::from(a.max(b)), 3 * i as u64 + k as u64)
-            },
-        )
-    };
-    let mut halves: Vec<HalfEdge> = faces
-        .par_iter()
-        .enumerate()
-        .flat_map_iter(|x| {
-            let ((i, f), sides) = (x, &sides);
-            sides((i, f)).collect::<Vec<_>>()
-        })
-        .collect();
+    let mut halves = vec![(0, 0); 3 * faces.len()];
+    halves.par_chunks_exact_mut(3).zip(faces).enumerate().for_each(|(i, (out, f))| {
+        for (k, half) in out.iter_mut().enumerate() {
+            let (a, b) = (f[k], f[(k + 1) % 3]);
+            let key = u64::from(a.min(b)) << 32 | u64::from(a.max(b));
+            *half = (key, 3 * i as u64 + k as u64);
+        }
+    });
     halves.par_sort_unstable();
     halves
 }
