@@ -55,6 +55,8 @@ const BRICK_BYTES: f64 = 512.0 * 4.0 + 256.0;
 const TRIANGLE_BYTES: f64 = 24.0;
 /// What a triangle takes beside that while the mesh is checked, or written and read back.
 const WORK_BYTES: f64 = 95.0;
+/// The same while loose pieces are dropped.
+const SWEPT_BYTES: f64 = 180.0;
 /// What a triangle takes while it is drawn: single precision, normals, its place in bands.
 const DRAWN_BYTES: f64 = 50.0;
 /// What a triangle of an input takes while the field of its mesh is made.
@@ -74,10 +76,14 @@ struct Known<'a> {
     lattice: &'a Lattice,
     /// Taken already: the program, its threads, inputs, and what was worked out on the way.
     taken: f64,
-    /// Held beside each frame: shapes, and what methods keep.
+    /// Held beside each frame: the shapes.
     held: f64,
-    /// Taken while the shapes are made, and given back after.
+    /// Taken while shapes and what methods need are made, and given back after.
     passing: f64,
+    /// Free in what is taken, for frames to use again.
+    free: f64,
+    /// Whether loose pieces are dropped.
+    swept: bool,
     /// Width and height of the pictures, if there are any.
     picture: Option<[u32; 2]>,
 }
@@ -106,9 +112,10 @@ impl Known<'_> {
     fn peak(&self, bricks: f64, size: Size) -> f64 {
         let samples = bricks * PLACE_BYTES + size.active_bricks * BRICK_BYTES;
         let drawing = |p| working_memory(p) + size.triangles * DRAWN_BYTES;
-        let work = (size.triangles * WORK_BYTES).max(self.picture.map_or(0.0, drawing));
+        let checking = size.triangles * if self.swept { SWEPT_BYTES } else { WORK_BYTES };
+        let work = checking.max(self.picture.map_or(0.0, drawing));
         let frame = samples + size.triangles * TRIANGLE_BYTES + work;
-        self.taken + self.held + frame.max(self.passing)
+        self.taken + self.held + (frame - self.free).max(self.passing)
     }
 }
 
@@ -126,8 +133,11 @@ pub fn predict(draft: &Draft, picture: Option<[u32; 2]>) -> Prediction {
         frames: draft.recipe().variants().iter().map(|(_, v)| times(v)).sum(),
         lattice: &Lattice::covering(&draft.domain(), h),
         taken: taken(),
-        held: sampled_bytes(draft, h) + draft.method_bytes(),
-        passing: surfaces.max(draft.largest_mesh() as f64) * FIELD_BYTES,
+        held: sampled_bytes(draft, h),
+        passing: (surfaces.max(draft.largest_mesh() as f64) * FIELD_BYTES)
+            .max(draft.method_bytes()),
+        free: 0.0,
+        swept: !draft.recipe().features.is_empty(),
         picture,
     };
     known.prediction(size(hybrid, h))
@@ -135,8 +145,16 @@ pub fn predict(draft: &Draft, picture: Option<[u32; 2]>) -> Prediction {
 
 /// From the area (mm²) of one shape that is sampled directly.
 pub fn predict_one(area: f64, lattice: &Lattice) -> Prediction {
-    let known =
-        Known { frames: 1, lattice, taken: taken(), held: 0.0, passing: 0.0, picture: None };
+    let known = Known {
+        frames: 1,
+        lattice,
+        taken: taken(),
+        held: 0.0,
+        passing: 0.0,
+        free: 0.0,
+        swept: true,
+        picture: None,
+    };
     known.prediction(size(area, lattice.step))
 }
 
@@ -185,21 +203,25 @@ pub struct Probe<'a> {
 /// What a run takes beyond a scene with larger cells, bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Growth {
-    /// Held beside each frame: sampled forms, what methods and shapes that move keep.
+    /// Held beside each frame: sampled forms, and what shapes that move keep.
     held: f64,
-    /// While a shape is made.
+    /// While a shape, or what a method needs, is made.
     passing: f64,
+    /// What the process had before any field was made, and the sampled forms of the coarse scene.
+    before: f64,
 }
 
 impl Growth {
     /// From a scene with cells `coarser` times as large to that of the draft.
     pub fn of(draft: &Draft, coarser: f64) -> Self {
         let h = draft.step();
-        let sampled = sampled_bytes(draft, h) - sampled_bytes(draft, h * coarser);
+        let coarse = sampled_bytes(draft, h * coarser);
+        let before = taken() + coarse;
+        let sampled = sampled_bytes(draft, h) - coarse;
         let (triangles, moves) = draft.tessellated();
         let kept = if moves { triangles as f64 * KEPT_BYTES } else { 0.0 };
-        let held = sampled + draft.method_bytes() + kept;
-        Self { held, passing: triangles as f64 * FIELD_BYTES }
+        let passing = (triangles as f64 * FIELD_BYTES).max(draft.method_bytes());
+        Self { held: sampled + kept, passing, before }
     }
 }
 
@@ -219,6 +241,9 @@ impl Probe<'_> {
             taken: taken().max(now),
             held: self.growth.held,
             passing: before.map_or(0.0, |peak| peak - now).max(self.growth.passing),
+            // fields leave holes, which pictures and meshes fill by about a half
+            free: (now - self.growth.before).max(0.0) / 2.0,
+            swept: self.coarse.variants.iter().any(|v| v.crumbs > 0.0),
             picture: self.picture,
         };
         Ok(known.prediction(most))

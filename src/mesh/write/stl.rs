@@ -53,7 +53,8 @@ fn coinciding(mesh: &TriMesh) -> String {
     let bits = |v: u32| (mesh.points[v as usize] + 0.0).to_array().map(f64::to_bits);
     used.sort_unstable_by_key(|&v| (bits(v), v));
     used.dedup();
-    let pair = used.windows(2).find(|w| bits(w[0]) == bits(w[1]));
+    let pairs = used.windows(2).filter(|w| bits(w[0]) == bits(w[1]));
+    let pair = pairs.min_by_key(|w| w[0]);
     let Some(&[a, b]) = pair else { return "points of the mesh coincide in f32".to_owned() };
     let at = mesh.points[a as usize];
     format!("points {a} and {b} of the mesh coincide in f32, at {at}")
