@@ -29,7 +29,7 @@ const LARGEST_SHARE: f64 = 3.5;
 /// Halvings of the range of shares: to a thousandth.
 const HALVINGS: u32 = 12;
 /// Ratio of the weights from which on a lesser shape is there whole: below it parts come and go.
-const WHOLE_FROM: f64 = 0.3;
+const WHOLE_FROM: f64 = 0.4;
 /// Largest height of the space-time blend in units of the reach: near t = 0 and 1 the blend is weak,
 /// and the height that would keep the volume grows without bound.
 const HEIGHT_CAP: f64 = 4.0;
@@ -76,7 +76,7 @@ pub(super) fn measured(at: &Site<'_>, lam: &[f64], inner: Inner) -> Measured {
         Inner::Grow | Inner::Erode | Inner::SpaceTime => local.apart = 1.0,
         Inner::Merge | Inner::Union => {
             local.apart = 1.0;
-            local.reach /= WHOLE_FROM;
+            local.reach = revealed(at.g, lam, local.reach);
             if inner == Inner::Merge {
                 thin = thinning(at, lam, local.reach, wanted);
             }
@@ -84,6 +84,27 @@ pub(super) fn measured(at: &Site<'_>, lam: &[f64], inner: Inner) -> Measured {
         Inner::Auto => {}
     }
     Measured { local, thin }
+}
+
+/// The reach at which a lesser shape of two grows in by even shares of its volume until it is there
+/// whole: by distance alone nearly all of it would come at once.
+fn revealed(g: &[f64], lam: &[f64], reach: f64) -> f64 {
+    let whole = reach / WHOLE_FROM;
+    let mut present = (0..lam.len()).filter(|&j| lam[j] > 0.0);
+    let (Some(a), Some(b), None) = (present.next(), present.next(), present.next()) else {
+        return whole;
+    };
+    let (lesser, top) = if lam[a] < lam[b] { (a, b) } else { (b, a) };
+    let ratio = lam[lesser] / lam[top];
+    let inside = g.chunks_exact(lam.len()).filter(|row| row[lesser] < 0.0);
+    let mut far: Vec<f64> = inside.map(|row| row[top]).collect();
+    if ratio >= WHOLE_FROM || far.is_empty() {
+        return whole;
+    }
+    let rank = (ratio / WHOLE_FROM * far.len() as f64) as usize;
+    let rank = rank.min(far.len() - 1);
+    let (_, far, _) = far.select_nth_unstable_by(rank, f64::total_cmp);
+    far.max(0.0) / ratio
 }
 
 /// Half thicknesses of a shape, mm.
@@ -229,6 +250,18 @@ pub(super) fn sizes(f: &Placed) -> Vec<f64> {
 /// From sample to sample of a feature, mm.
 pub(super) fn step(f: &Placed) -> DVec3 {
     2.0 * f.element.half / FEATURE_SIDE as f64
+}
+
+/// Whether shape `j` of k is inside in more than half of the slices of a feature's samples, along each
+/// axis.
+pub(super) fn reaches_through(g: &[f64], k: usize, j: usize) -> bool {
+    let side = FEATURE_SIDE;
+    let mut seen = [[false; FEATURE_SIDE]; 3];
+    for (n, _) in g.chunks_exact(k).enumerate().filter(|(_, row)| row[j] < 0.0) {
+        let at = [n % side, n / side % side, n / (side * side)];
+        at.iter().zip(&mut seen).for_each(|(&at, seen)| seen[at] = true);
+    }
+    seen.iter().all(|axis| 2 * axis.iter().filter(|s| **s).count() > side)
 }
 
 /// Measures the features of a hybrid, or the whole shapes over `domain` where it has none.

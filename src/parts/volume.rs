@@ -41,6 +41,12 @@ impl Field for Stood<'_> {
         self.field.value(self.stand.back(p)) - self.grow
     }
 
+    fn values(&self, at: &[DVec3], out: &mut [f64]) {
+        let back: Vec<DVec3> = at.iter().map(|&p| self.stand.back(p)).collect();
+        self.field.values(&back, out);
+        out.iter_mut().for_each(|v| *v -= self.grow);
+    }
+
     fn bound(&self, b: &Aabb) -> Interval {
         let image = Aabb::of(b.corners().map(|p| self.stand.back(p)));
         self.field.bound(&image.grow(1e-9 * (1.0 + b.radius()))).shift(-self.grow)

@@ -1,5 +1,6 @@
 //! `auto`: features suggested where a recipe has none, and what they do chosen by a search.
 
+use super::live::Exact;
 use super::{SceneError, plan, suggest};
 use crate::job::Job;
 use crate::morph::{self, Choice, Course, Inner, Outlook, Plan, Style, Tuning};
@@ -52,8 +53,17 @@ impl From<&Outlook> for Seen {
     }
 }
 
-/// Gives a recipe whose `auto` has no features those that are suggested, and its shapes their poses;
-/// also what was found, in words. A recipe that needs none is left as it is.
+/// A recipe with the features it needs.
+pub(super) struct Featured {
+    pub recipe: Recipe,
+    /// What was found, in words.
+    pub found: Vec<String>,
+    /// Fields of shapes, made on the way: before these were turned and shifted.
+    pub ready: BTreeMap<String, Exact>,
+}
+
+/// Gives a recipe whose `auto` has no features those that are suggested, and its shapes their poses. A
+/// recipe that needs none is left as it is.
 ///
 /// # Errors
 /// A shape that cannot be read; cancelled.
@@ -62,16 +72,17 @@ pub(super) fn with_features(
     source: &Source,
     beside: &Path,
     job: &dyn Job,
-) -> Result<(Recipe, Vec<String>), SceneError> {
+) -> Result<Featured, SceneError> {
+    let plain = |recipe, found| Featured { recipe, found, ready: BTreeMap::new() };
     let wanted = wanting(&recipe).map_err(|p| source.locate(p))?;
     let surface = |n: &String| recipe.shapes[n].surface.is_some();
     if !recipe.features.is_empty() || wanted.is_empty() {
-        return Ok((recipe, Vec::new()));
+        return Ok(plain(recipe, Vec::new()));
     }
     if wanted.iter().any(surface) {
         let why = "auto: no parts are sought on surfaces; space-time instead";
         whole(&mut recipe);
-        return Ok((recipe, vec![why.to_owned()]));
+        return Ok(plain(recipe, vec![why.to_owned()]));
     }
     let entries = wanted.iter().map(|n| (n.clone(), recipe.shapes[n].clone())).collect();
     let looked =
@@ -81,11 +92,13 @@ pub(super) fn with_features(
     if suggestion.shapes.iter().any(|g| g.chair.is_none()) {
         found.push("auto: no parts of a chair to pair; space-time instead".to_owned());
         whole(&mut recipe);
-        return Ok((recipe, found));
+        return Ok(plain(recipe, found));
     }
+    let names = looked.shapes.iter().map(|(name, _)| name.clone());
+    let ready = names.zip(looked.made).filter_map(|(name, made)| Some((name, made?))).collect();
     recipe.shapes.extend(looked.shapes);
     recipe.features = suggest::features(&suggestion);
-    Ok((recipe, found))
+    Ok(Featured { recipe, found, ready })
 }
 
 /// What `auto` is where no parts are found.

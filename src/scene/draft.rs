@@ -1,9 +1,9 @@
 //! Shapes read and placed: enough to know how large the work will be.
 
-use super::auto::{self, Search};
+use super::auto::{self, Featured, Search};
 use super::body::Body;
 use super::live::LiveShape;
-use super::live::{self, Placed, Stop, Want};
+use super::live::{self, Exact, Placed, Stop, Want};
 use super::variant::{Parts, Variant, asked};
 use super::{Scene, SceneError, mesh_element, plan, scheme};
 use crate::element::Element;
@@ -30,6 +30,8 @@ pub struct Draft {
     step: f64,
     /// What `auto` found on the shapes.
     found: Vec<String>,
+    /// Fields it has made of them.
+    ready: BTreeMap<String, Exact>,
 }
 
 impl Draft {
@@ -46,7 +48,8 @@ impl Draft {
         job.stage("read");
         // names are looked up freely from here on
         recipe.validate().map_err(|p| source.locate(p))?;
-        let (recipe, found) = auto::with_features(recipe, &source, beside, job)?;
+        let featured = auto::with_features(recipe, &source, beside, job)?;
+        let Featured { recipe, found, ready } = featured;
         let uses = uses(&recipe).map_err(|p| source.locate(p))?;
         let mut placed: Vec<Placed> = Vec::with_capacity(uses.len());
         // those that stand like another come after it
@@ -70,7 +73,7 @@ impl Draft {
         }
         placed.sort_by(|a, b| a.name.cmp(&b.name));
         let step = step(&recipe.grid, longest(&placed));
-        Ok(Self { recipe, source, beside: beside.to_owned(), placed, uses, step, found })
+        Ok(Self { recipe, source, beside: beside.to_owned(), placed, uses, step, found, ready })
     }
 
     /// Side of a cell, mm.
@@ -172,7 +175,7 @@ impl Draft {
         job: &dyn Job,
     ) -> Result<(Scene, Vec<(String, SceneError)>), SceneError> {
         let (padding, step) = (self.padding(), self.step);
-        let Self { mut recipe, source, beside, placed, uses, found, .. } = self;
+        let Self { mut recipe, source, beside, placed, uses, found, mut ready, .. } = self;
         let locate = |p: Problem| SceneError::Bad(source.locate(p));
         let box_ = hull(&placed);
         fits(&Lattice::covering(&box_.grow(padding), step)).map_err(locate)?;
@@ -183,10 +186,12 @@ impl Draft {
             notes.extend_from_slice(&shape.notes);
             inputs.extend_from_slice(&shape.inputs);
             let (entry, purpose) = (&recipe.shapes[&shape.name], &uses[&shape.name]);
-            let made = live::make(shape, entry, purpose, step, job).map_err(|stop| match stop {
-                Stop::Problem(p) => locate(p),
-                Stop::Cancelled(c) => c.into(),
-            });
+            let ready = ready.remove(&shape.name);
+            let made =
+                live::make(shape, entry, purpose, step, ready, job).map_err(|stop| match stop {
+                    Stop::Problem(p) => locate(p),
+                    Stop::Cancelled(c) => c.into(),
+                });
             let (shape, found) = made?;
             notes.extend(found);
             shapes.push(shape);

@@ -6,6 +6,7 @@ use super::moving::Moving;
 use super::place::{Similarity, place};
 use super::skinned::{How, Skinned, SkinnedError};
 use super::{Input, digest, surface};
+use crate::field::csg::Moved;
 use crate::field::mesh::{MeshField, MeshFieldError, MeshOptions, Sign, Thicken, Which};
 use crate::field::sampled::Sampled;
 use crate::field::solid::Assembly;
@@ -20,7 +21,7 @@ use crate::recipe::{
     self, LengthUnit, PlainOr, Problem, ShapeEntry, SignEntry, ThickenEntry, ThickenWhich, UpAxis,
     join,
 };
-use glam::DQuat;
+use glam::{DAffine3, DQuat};
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
@@ -36,6 +37,9 @@ pub(super) struct Placed {
     pub stands: Aabb,
     /// Area of its triangles, mm², for predictions.
     pub area: f64,
+    /// A mesh before it was turned and shifted, and how it was: its field is made there, whatever its
+    /// pose.
+    pub still: Option<(TriMesh, Similarity)>,
     pub notes: Vec<String>,
     pub inputs: Vec<Input>,
 }
@@ -99,7 +103,7 @@ pub(super) fn load(
         }
     };
     let Read { body, story, warnings, inputs } = read;
-    let body = place(body, entry, want.like, at)?;
+    let (body, still) = place(body, entry, want.like, at)?;
     let (bounds, stands) = (body.bounds_at(want.times), body.bounds());
     if bounds.is_empty() || !bounds.is_finite() {
         return Err(Problem::new(at, "the shape is empty: it has no triangle with a size"));
@@ -108,7 +112,8 @@ pub(super) fn load(
     let mut notes =
         vec![format!("{name}: {story}; {:.0} x {:.0} x {:.0} mm", size.x, size.y, size.z)];
     notes.extend(warnings.into_iter().map(|w| format!("{name}: {w}")));
-    Ok(Placed { name: name.to_owned(), area: body.area(), body, bounds, stands, notes, inputs })
+    let (name, area) = (name.to_owned(), body.area());
+    Ok(Placed { name, area, body, bounds, stands, still, notes, inputs })
 }
 
 /// What was read for a shape.
@@ -204,6 +209,7 @@ impl From<Cancelled> for Stop {
 }
 
 /// The field of a placed shape.
+#[derive(Clone)]
 pub(super) struct Exact {
     pub field: Shared,
     /// What was found on the way.
@@ -215,6 +221,16 @@ pub(super) struct Exact {
 impl Exact {
     fn new(field: Shared, notes: Vec<String>) -> Self {
         Self { field, notes, thickened: false }
+    }
+
+    /// The same, turned and shifted.
+    fn moved(self, by: &Similarity) -> Self {
+        let affine = DAffine3::from_rotation_translation(by.turn, by.shift);
+        // a turn and a shift are never uneven
+        match Moved::new(self.field.clone(), affine) {
+            Ok(moved) => Self { field: Arc::new(moved), ..self },
+            Err(_) => self,
+        }
     }
 }
 
@@ -248,9 +264,14 @@ pub(super) fn exact(
                 MeshFieldError::Cancelled(c) => Stop::Cancelled(c),
                 other => Stop::Problem(Problem::new(at, other.to_string())),
             };
-            let mut made = mesh_field(&mesh, entry, job).map_err(fail)?;
+            let still = placed.still.as_ref();
+            let mesh = still.map_or(&mesh, |(still, _)| still);
+            let mut made = mesh_field(mesh, entry, job).map_err(fail)?;
             made.notes.iter_mut().for_each(|n| *n = format!("{}: {n}", placed.name));
-            Ok(made)
+            Ok(match still {
+                Some((_, by)) => made.moved(by),
+                None => made,
+            })
         }
     }
 }
@@ -292,12 +313,14 @@ fn mesh_field(mesh: &TriMesh, entry: &ShapeEntry, job: &dyn Job) -> Result<Exact
     Ok(Exact { field, notes, thickened: !said.is_empty() })
 }
 
-/// A placed shape brought to life, and what was found on the way.
+/// A placed shape brought to life, and what was found on the way; `ready` is its field as it was before
+/// it was turned and shifted, where that has been made.
 pub(super) fn make(
     placed: Placed,
     entry: &ShapeEntry,
     purpose: &Use,
     step: f64,
+    ready: Option<Exact>,
     job: &dyn Job,
 ) -> Result<(LiveShape, Vec<String>), Stop> {
     let start = Instant::now();
@@ -326,7 +349,11 @@ pub(super) fn make(
         };
         return Ok((shape, notes));
     }
-    let Exact { field: exact, notes, .. } = exact(placed, entry, 0.5, step, job)?;
+    let Exact { field: exact, notes, .. } = match (ready, &placed.still) {
+        (Some(ready), Some((_, by))) => ready.moved(by),
+        (Some(ready), None) => ready,
+        (None, _) => exact(placed, entry, 0.5, step, job)?,
+    };
     let made = start.elapsed().as_secs_f64();
     let (field, volume) = if purpose.morphs || !purpose.alone {
         sampled(&*exact, step, job)?

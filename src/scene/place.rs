@@ -1,6 +1,7 @@
 //! How shapes are scaled, turned and put somewhere.
 
 use super::body::Body;
+use crate::mesh::TriMesh;
 use crate::num::Aabb;
 use crate::recipe::{Place, PlaceLike, PlainOr, Problem, ShapeEntry};
 use glam::{DQuat, DVec3};
@@ -45,6 +46,10 @@ impl Similarity {
     }
 }
 
+/// A placed body, and of a mesh that is turned and shifted by plain numbers also what it was before and
+/// how it was moved.
+pub(super) type PlacedBody = (Body, Option<(TriMesh, Similarity)>);
+
 /// Scales, turns and places a body as its entry says; `like` is the box of the shape it stands
 /// like, where it does; `at` is the shape's key.
 pub(super) fn place(
@@ -52,7 +57,7 @@ pub(super) fn place(
     entry: &ShapeEntry,
     like: Option<Aabb>,
     at: &str,
-) -> Result<Body, Problem> {
+) -> Result<PlacedBody, Problem> {
     let turn = DQuat::from_rotation_z(entry.turn_deg.to_radians());
     let scale = match entry.height {
         None => 1.0,
@@ -64,18 +69,29 @@ pub(super) fn place(
             Problem::new(format!("{at}.height"), why)
         })?,
     };
+    let shift = DVec3::from_array(entry.shift);
+    let kept = matches!(entry.place, PlainOr::Plain(Place::Keep));
+    if kept && (turn != DQuat::IDENTITY || shift != DVec3::ZERO) {
+        let body = body.moved(&Similarity { scale, ..Similarity::NONE });
+        let by = Similarity { turn, shift, ..Similarity::NONE };
+        let still = match &body {
+            Body::Mesh(mesh) => Some((mesh.clone(), by)),
+            _ => None,
+        };
+        return Ok((body.moved(&by), still));
+    }
     let body = body.moved(&Similarity { scale, turn, ..Similarity::NONE });
     let now = body.bounds();
-    let shift = match (&entry.place, like) {
+    let to = match (&entry.place, like) {
         (PlainOr::Plain(Place::Floor), _) => -floor_point(&now),
         (PlainOr::Table(PlaceLike { .. }), Some(box_)) => floor_point(&box_) - floor_point(&now),
         _ => DVec3::ZERO,
     };
-    let shift = shift + DVec3::from_array(entry.shift);
+    let shift = to + shift;
     if shift == DVec3::ZERO {
-        return Ok(body);
+        return Ok((body, None));
     }
-    Ok(body.moved(&Similarity { shift, ..Similarity::NONE }))
+    Ok((body.moved(&Similarity { shift, ..Similarity::NONE }), None))
 }
 
 /// The middle of the box's lowest side.

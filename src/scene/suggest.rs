@@ -1,6 +1,7 @@
 //! Shapes looked at before a recipe is written, and what was found as its entries.
 
 use super::draft::step;
+use super::live::Exact;
 use super::{SceneError, Single};
 use crate::element::{Element, Shape};
 use crate::field::Shared;
@@ -27,6 +28,8 @@ pub struct Looked {
     pub shells: Vec<TriMesh>,
     /// What was assumed and found on reading.
     pub notes: Vec<String>,
+    /// The fields again with what was found on making them, where the pose only turns and shifts.
+    pub(super) made: Vec<Option<Exact>>,
 }
 
 /// A member has to be this many cells thick, or it falls between samples where a hybrid makes it
@@ -50,6 +53,7 @@ pub fn look(
 ) -> Result<Looked, SceneError> {
     let (mut fields, mut shells, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
     let (mut stood, mut notes, mut read) = (Vec::new(), Vec::new(), Vec::new());
+    let mut all = Vec::new();
     for (name, entry) in shapes {
         check(job)?;
         job.stage(&format!("read {name}"));
@@ -70,9 +74,10 @@ pub fn look(
         let single = single.no_thinner(thick);
         let thin = single.entry().clone();
         let made = single.exact(job)?;
-        notes.extend(made.notes);
-        fields.push(made.field);
+        notes.extend_from_slice(&made.notes);
+        fields.push(made.field.clone());
         stood.push((name, if made.thickened { thin } else { plain }));
+        all.push(made);
     }
     job.stage("parts");
     let named: Vec<_> =
@@ -81,7 +86,9 @@ pub fn look(
     for (((_, entry), guess), bounds) in stood.iter_mut().zip(&suggestion.shapes).zip(&boxes) {
         place(entry, &guess.pose, bounds);
     }
-    Ok(Looked { shapes: stood, suggestion, fields, shells, notes })
+    let sized = suggestion.shapes.iter().map(|g| g.pose.scale == 1.0);
+    let made = all.into_iter().zip(sized).map(|(made, same)| same.then_some(made)).collect();
+    Ok(Looked { shapes: stood, suggestion, fields, shells, notes, made })
 }
 
 /// The suggested features as entries; lengths to a tenth of a millimetre.

@@ -149,8 +149,9 @@ impl Variant {
         self.domain
     }
 
-    /// The weighted mean of the shapes' volumes at `t`, mm³; with features, the mean over them. Not a
-    /// number where a shape has no field, and for a shape alone, which has nothing to be compared with.
+    /// The mean of the shapes' volumes at `t`, mm³, by the weights of the whole (without a row
+    /// `default`, the mean of the features' rows; for two shapes, the time). Not a number where a shape
+    /// has no field, and for a shape alone, which has nothing to be compared with.
     pub fn mean_volume(&self, t: f64) -> f64 {
         let volumes: Vec<f64> = self.shapes.iter().map(|s| s.volume_at(t)).collect();
         let plan = match (&self.way, volumes.as_slice()) {
@@ -158,12 +159,7 @@ impl Variant {
             (Way::Pair(_), [a, b]) => return (1.0 - t) * a + t * b,
             _ => return f64::NAN,
         };
-        let mean = |c: &Course| -> f64 { c.at(t).iter().zip(&volumes).map(|(w, v)| w * v).sum() };
-        if plan.features.is_empty() {
-            return mean(&plan.course);
-        }
-        let sum: f64 = plan.features.iter().map(|f| mean(&f.morph)).sum();
-        sum / plan.features.len() as f64
+        plan.course.at(t).iter().zip(&volumes).map(|(w, v)| w * v).sum()
     }
 }
 

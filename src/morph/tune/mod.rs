@@ -53,6 +53,8 @@ pub struct Outlook {
     pub volume: f64,
     /// Feet that should stand on the floor and do not.
     pub lame: usize,
+    /// How much more of its parts than its weight a shape gives at most, in [0, 1].
+    pub lean: f64,
 }
 
 /// A choice for every feature, and what is to be expected of it.
@@ -67,15 +69,25 @@ pub struct Tuning {
 }
 
 /// Cells along the longest side of the coarse samples.
-const CELLS: f64 = 80.0;
-/// Times at which a pair is tried.
-const TIMES: [f64; 3] = [0.25, 0.5, 0.75];
+const CELLS: f64 = 104.0;
+/// Times at which a pair is tried: close enough that no part comes loose between them unseen.
+const TIMES: [f64; 7] = [0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9];
 /// Share of the largest piece from which on the rest is crumbs.
 const WHOLE: f64 = 0.995;
-/// Volumes over the mean volume that need no other choice.
-const FINE_VOLUME: std::ops::Range<f64> = 0.8..1.3;
 /// Natural logarithm of the volume ratio that costs nothing.
 const FREE_RATIO: f64 = 0.1;
+/// What it costs to be in pieces.
+const BROKEN: f64 = 5.0;
+/// What a natural logarithm beyond that costs, and more beyond this.
+const VOLUME: f64 = 4.0;
+const FAR_RATIO: f64 = 0.22;
+const FAR: f64 = 12.0;
+/// The volume on coarse samples where the mesh has the mean volume: samples make thin parts thicker.
+const USUAL: f64 = 1.06;
+/// How far a hybrid may lean to one shape at no cost.
+const FREE_LEAN: f64 = 0.2;
+/// Most steps of the search.
+const STEPS: usize = 12;
 
 /// Chooses what the features of a plan do; `volumes` are those of its shapes, mm³. A plan without
 /// features has nothing to choose.
@@ -98,41 +110,76 @@ pub fn tune(
     for stage in &mut stages {
         stage.measure(&kins, plan, volumes, job)?;
     }
-    let mut candidates = options::candidates(&kins);
-    let judge = |c: &Vec<usize>| {
+    let judge = |c: &[usize]| {
         job::check(job)?;
         let outlook: Vec<_> = stages.par_iter().map(|s| s.judge(&kins, c)).collect();
         Ok((cost(&outlook) + options::bias(&kins, c), outlook))
     };
-    let first = candidates.first().map(judge).transpose()?;
-    if first.as_ref().is_some_and(|(_, outlook)| outlook.iter().all(Outlook::fine)) {
-        // the preferred combination has nothing wrong with it
-        candidates.truncate(1);
-    }
-    let others = candidates.par_iter().skip(1).map(judge).collect::<Result<Vec<_>, Cancelled>>()?;
-    let judged: Vec<_> = first.into_iter().chain(others).collect();
-    let best = judged.iter().enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0));
-    let (best, outlook) = best.map_or((0, Vec::new()), |(i, (_, o))| (i, o.clone()));
-    let choices = candidates.get(best).map_or_else(Vec::new, |c| chosen(plan, &kins, c));
-    Ok(Tuning { choices, outlook, tried: candidates.len() })
+    let (best, outlook, tried) = if options::windows(style, &kins) {
+        best_of(&options::orders(&kins), &judge)?
+    } else {
+        descent(&kins, &judge)?
+    };
+    Ok(Tuning { choices: chosen(plan, &kins, &best), outlook, tried })
 }
 
-impl Outlook {
-    /// Whether it is one standing piece of about the mean volume.
-    fn fine(&self) -> bool {
-        self.largest >= WHOLE && self.lame == 0 && FINE_VOLUME.contains(&self.volume)
-    }
+/// What a combination costs, and what it looks like.
+type Judged = Result<(f64, Vec<Outlook>), Cancelled>;
+/// A combination, what it looks like, and how many were tried.
+type Found = Result<(Vec<usize>, Vec<Outlook>, usize), Cancelled>;
+
+/// The best of some combinations; the first of equals.
+fn best_of(all: &[Vec<usize>], judge: &(impl Fn(&[usize]) -> Judged + Sync)) -> Found {
+    let judged = all.par_iter().map(|c| judge(c)).collect::<Result<Vec<_>, _>>()?;
+    let best = judged.iter().zip(all).min_by(|a, b| a.0.0.total_cmp(&b.0.0));
+    let (outlook, best) = best.map_or_else(Default::default, |((_, o), c)| (o.clone(), c.clone()));
+    Ok((best, outlook, all.len()))
 }
 
-/// How far a hybrid is from one standing piece of the mean volume.
+/// From what is preferred, and from parts taken in turns, the best change of one kind after the other as
+/// long as it is better.
+fn descent(kins: &[Kin], judge: &(impl Fn(&[usize]) -> Judged + Sync)) -> Found {
+    let mut tried = 0;
+    let (mut found, mut least) = ((Vec::new(), Vec::new()), f64::INFINITY);
+    for mut best in options::starts(kins) {
+        let (mut cost, mut outlook) = judge(&best)?;
+        tried += 1;
+        for _ in 0..STEPS {
+            let near = options::neighbours(kins, &best);
+            let judged = near.par_iter().map(|c| judge(c)).collect::<Result<Vec<_>, _>>()?;
+            tried += near.len();
+            let better = judged.into_iter().zip(near).min_by(|a, b| a.0.0.total_cmp(&b.0.0));
+            match better {
+                Some(((less, seen), candidate)) if less < cost => {
+                    (cost, outlook, best) = (less, seen, candidate);
+                }
+                _ => break,
+            }
+        }
+        if cost < least {
+            (found, least) = ((best, outlook), cost);
+        }
+    }
+    Ok((found.0, found.1, tried))
+}
+
+/// How far a hybrid is from one standing piece of the mean volume that does not jump, the mean over the
+/// times.
 fn cost(outlook: &[Outlook]) -> f64 {
     let one = |o: &Outlook| {
         let loose = 1.0 - o.largest;
-        let broken = if o.largest < WHOLE { 3.0 } else { 0.0 };
-        let volume = if o.volume > 0.0 { o.volume.ln().abs() } else { 10.0 };
-        broken + 10.0 * loose + o.lame as f64 + 4.0 * (volume - FREE_RATIO).max(0.0)
+        let broken = if o.largest < WHOLE { BROKEN } else { 0.0 };
+        let volume = if o.volume > 0.0 { (o.volume / USUAL).ln().abs() } else { 10.0 };
+        let volume = VOLUME * (volume - FREE_RATIO).max(0.0) + FAR * (volume - FAR_RATIO).max(0.0);
+        let lean = 2.0 * (o.lean - FREE_LEAN).max(0.0);
+        broken + 10.0 * loose + o.lame as f64 + volume + lean
     };
-    outlook.iter().map(one).sum()
+    let jump = |o: &[Outlook]| {
+        let by = (o[1].volume.max(1e-3) / o[0].volume.max(1e-3)).ln().abs();
+        2.0 * (by - FREE_RATIO).max(0.0)
+    };
+    let jumps: f64 = outlook.windows(2).map(jump).sum();
+    (outlook.iter().map(one).sum::<f64>() + jumps) / outlook.len().max(1) as f64
 }
 
 fn chosen(plan: &Plan, kins: &[Kin], candidate: &[usize]) -> Vec<Choice> {

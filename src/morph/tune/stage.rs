@@ -28,9 +28,13 @@ pub(super) struct Stage {
     sharp: Vec<f64>,
     /// Values of the shapes in the cube of each feature.
     rows: Vec<Vec<f64>>,
+    /// Volume of all shapes in each feature, mm³.
+    hefts: Vec<f64>,
     /// What is measured, by feature and option of its kind.
     measured: Vec<Vec<(Vec<f64>, Measured)>>,
-    /// The mean volume, mm³, by option of each kind: that of the plan's weights.
+    /// The weights of the whole.
+    course: Vec<f64>,
+    /// The mean volume by these, mm³.
     mean: f64,
     /// Where the shapes' feet go.
     feet: Vec<Step>,
@@ -79,6 +83,11 @@ impl Stage {
             })
             .collect::<Result<_, Cancelled>>()?;
         let rows = measure::rows(&hybrid, job)?;
+        let heft = |(f, g): (&Placed, &Vec<f64>)| {
+            let inside = g.iter().filter(|v| **v < 0.0).count();
+            inside as f64 * measure::step(f).element_product()
+        };
+        let hefts = hybrid.features.iter().zip(&rows).map(heft).collect();
         let (mut at, mut g, mut sharp) = (Vec::new(), Vec::new(), Vec::new());
         for (a, b, c) in slices {
             at.extend(a);
@@ -87,8 +96,24 @@ impl Stage {
         }
         let (low, measured) = (domain.min, Vec::new());
         let (feet, cell) = (morph.steps(t), morph.plan.cell);
-        let mean = 0.0;
-        Ok(Self { t, hybrid, step, low, size, at, g, sharp, rows, measured, mean, feet, cell })
+        let (course, mean) = (Vec::new(), 0.0);
+        Ok(Self {
+            t,
+            hybrid,
+            step,
+            low,
+            size,
+            at,
+            g,
+            sharp,
+            rows,
+            hefts,
+            measured,
+            course,
+            mean,
+            feet,
+            cell,
+        })
     }
 
     /// The samples of a feature.
@@ -108,6 +133,32 @@ impl Stage {
         };
         let all: Vec<f64> = features.iter().filter_map(one).collect();
         all.iter().sum::<f64>() / all.len().max(1) as f64
+    }
+
+    /// Which shapes have these features' part: those that reach through more than half of an element
+    /// along each of its axes. What juts in from beside does not.
+    pub fn owners(&self, features: &[usize]) -> Vec<bool> {
+        let k = self.hybrid.shapes.len();
+        let rows = || features.iter().filter_map(|&i| self.rows.get(i));
+        (0..k).map(|j| rows().any(|g| measure::reaches_through(g, k, j))).collect()
+    }
+
+    /// The only shape of two that has these features' part; none where both or neither have it.
+    pub fn owner(&self, features: &[usize]) -> Option<usize> {
+        match self.owners(features)[..] {
+            [true, false] => Some(0),
+            [false, true] => Some(1),
+            _ => None,
+        }
+    }
+
+    /// How much of a shape lies between these features and those, in samples.
+    pub fn seam(&self, shape: usize, these: &[usize], those: &[usize]) -> f64 {
+        let (k, n) = (self.hybrid.shapes.len(), self.hybrid.features.len());
+        let sum = |w: &[f64], of: &[usize]| of.iter().map(|&i| w[i]).sum::<f64>();
+        let rows = self.g.chunks_exact(k).zip(self.sharp.chunks_exact(n));
+        let inside = rows.filter(|(g, _)| g[shape] < 0.0);
+        inside.map(|(_, w)| sum(w, these) * sum(w, those)).sum()
     }
 
     /// Measures every option of every kind.
@@ -137,7 +188,8 @@ impl Stage {
                 Ok(each.collect())
             })
             .collect::<Result<_, Cancelled>>()?;
-        self.mean = plan.course.at(self.t).iter().zip(volumes).map(|(l, v)| l * v).sum();
+        self.course = plan.course.at(self.t);
+        self.mean = self.course.iter().zip(volumes).map(|(l, v)| l * v).sum();
         Ok(())
     }
 
@@ -163,6 +215,7 @@ impl Stage {
             largest: if pieces > 0.0 { largest / pieces } else { 0.0 },
             volume: if self.mean > 0.0 { whole * self.step.powi(3) / self.mean } else { 1.0 },
             lame: self.lame(&setting, &label, main.unwrap_or(0) as u32),
+            lean: self.lean(&setting),
         }
     }
 
@@ -181,6 +234,15 @@ impl Stage {
             kin.features.iter().for_each(|&i| option[i] = o);
         }
         (0..n).filter_map(|i| self.measured[i].get(option[i])).collect()
+    }
+
+    /// How much more of the volume in the features than its weight a shape gives at most.
+    fn lean(&self, set: &[&(Vec<f64>, Measured)]) -> f64 {
+        let all = self.hefts.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let rows = || self.hefts.iter().zip(set);
+        let over =
+            |(j, w): (usize, &f64)| rows().map(|(h, (l, _))| h * l[j]).sum::<f64>() / all - w;
+        self.course.iter().enumerate().map(over).fold(0.0, f64::max)
     }
 
     /// Where a kept sample lies.
