@@ -13,6 +13,11 @@ pub fn peak_memory() -> Option<u64> {
     kib(&fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
+/// Resident set of this process now, bytes; `None` where the system does not tell.
+pub fn resident_memory() -> Option<u64> {
+    kib(&fs::read_to_string("/proc/self/status").ok()?, "VmRSS:")
+}
+
 /// Memory that can be had without swapping, bytes, within the limits that this process has.
 pub fn available_memory() -> Option<u64> {
     let free = kib(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")?;

@@ -1,12 +1,20 @@
 //! Files that are put in place whole: written beside it, then renamed.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 use tempfile::NamedTempFile;
 
 const PREFIX: &str = ".fieldgraft-";
 const SUFFIX: &str = ".part";
+
+/// Folders that something was written to.
+static FOLDERS: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+/// Whether nothing more may be written.
+static CLOSED: AtomicBool = AtomicBool::new(false);
 
 /// A file beside `path`, to be filled and then renamed into it; dropped before that, it goes away.
 ///
@@ -20,6 +28,12 @@ pub fn beside(path: &Path) -> io::Result<NamedTempFile> {
         _ => Path::new("."),
     };
     sweep(folder);
+    if let Ok(mut folders) = FOLDERS.lock() {
+        folders.insert(folder.to_owned());
+    }
+    if CLOSED.load(Ordering::SeqCst) {
+        return Err(io::ErrorKind::Interrupted.into());
+    }
     let prefix = format!("{PREFIX}{}-", std::process::id());
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(SUFFIX);
@@ -29,6 +43,16 @@ pub fn beside(path: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
+/// Removes what this process has begun to write and lets it begin nothing more: for a process that is
+/// to end at once. What is in place stays.
+pub fn abandon() {
+    CLOSED.store(true, Ordering::SeqCst);
+    let folders = FOLDERS.lock().map(|f| f.clone()).unwrap_or_default();
+    for folder in folders {
+        clear(&folder, |id| id == std::process::id());
+    }
+}
+
 /// Removes what processes that are no more have left. Where it cannot be known whether a process
 /// is there, and for what cannot be removed, nothing happens.
 fn sweep(folder: &Path) {
@@ -36,13 +60,18 @@ fn sweep(folder: &Path) {
     if !processes.join("self").exists() {
         return;
     }
+    clear(folder, |id| !processes.join(id.to_string()).exists());
+}
+
+/// Removes the hidden files of processes with such numbers.
+fn clear(folder: &Path, of: impl Fn(u32) -> bool) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let writer = name
             .to_str()
             .and_then(|n| n.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?.split_once('-'))
             .and_then(|(id, _)| id.parse::<u32>().ok());
-        if writer.is_some_and(|id| !processes.join(id.to_string()).exists()) {
+        if writer.is_some_and(&of) {
             let _ = fs::remove_file(entry.path());
         }
     }

@@ -101,7 +101,7 @@ impl Compare {
         (recipe.morph, recipe.hybrids) = (MorphEntry::default(), fit.iter().map(entry).collect());
         let name = recipe.name.clone();
         let draft = Draft::open(recipe, source, file.parent().unwrap_or(Path::new("")), watch)?;
-        let prediction = measured(predict(&draft));
+        let prediction = measured(predict(&draft, Some(PICTURE)));
         if self.making.dry_run {
             steps::tell_prediction(&prediction, &self.making, watch)?;
         }

@@ -8,6 +8,7 @@ use fieldgraft::run::RunError;
 use fieldgraft::scene::SceneError;
 use std::borrow::Cow;
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// An exit code and its message.
 #[derive(Debug)]
@@ -56,8 +57,12 @@ impl Failure {
         self
     }
 
-    /// Prints the message to stderr.
+    /// Prints the message to stderr; that of an interruption once.
     pub fn tell(&self) {
+        static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+        if self.code == Self::INTERRUPTED && INTERRUPTED.swap(true, Ordering::SeqCst) {
+            return;
+        }
         if !self.message.is_empty() {
             // nowhere is left to complain to if stderr is gone
             let _ = writeln!(std::io::stderr(), "error: {}", paragraph(&self.message));

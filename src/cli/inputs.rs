@@ -163,7 +163,7 @@ pub fn mesher(text: &str) -> Result<MesherEntry, String> {
 /// How finely to sample.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub struct Fineness {
-    /// Cells along the longest side; 256 unless --voxel is given
+    /// Cells along the longest side; by default as a recipe says, else 256
     #[arg(long, value_name = "N", conflicts_with = "voxel")]
     pub resolution: Option<u32>,
     /// Side of a cell

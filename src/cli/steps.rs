@@ -6,11 +6,11 @@ use super::failure::Failure;
 use super::watch::Watch;
 use fieldgraft::job::Job;
 use fieldgraft::mesh::check_output;
-use fieldgraft::picture::Style;
+use fieldgraft::picture::{Style, is_animation};
 use fieldgraft::recipe::{GridEntry, Recipe, Source};
 use fieldgraft::run::{
-    self, AnimationReport, FrameReport, Names, Playing, Prediction, Report, Settings, ShapeReport,
-    animation_memory, available_memory, coarsening, predict, probe,
+    self, AnimationReport, FrameReport, Growth, Names, Playing, Prediction, Probe, Report,
+    Settings, ShapeReport, animation_memory, available_memory, coarsening, predict, reset_peak,
 };
 use fieldgraft::scene::{Draft, sha256};
 use std::path::Path;
@@ -67,21 +67,26 @@ pub fn made(work: Task<'_>, making: &Making, watch: &Watch) -> Result<Option<Mad
         p.memory_bytes += animation_memory(&p, &names.animations, style.size);
         p
     };
+    let moving = names.animations.iter().any(|n| is_animation(Path::new(n)));
+    let picture = (names.picture.is_some() || moving).then_some(style.size);
     let coarse = making.dry_run.then(|| (coarser(&recipe), source.clone()));
     let draft = Draft::open(recipe, source, beside, watch).map_err(plain)?;
-    let first = with_animations(predict(&draft));
+    let first = with_animations(predict(&draft, picture));
     let limit = limit(making);
     if let Some((recipe, source)) = coarse {
         refuse(&first, limit)?;
         let by = coarsening(&draft);
         let recipe = recipe(draft.step() * by);
+        let (growth, lattice) = (Growth::of(&draft, by), draft.lattice());
         drop(draft);
+        reset_peak();
         let scene = Draft::open(recipe, source, beside, watch)
             .and_then(|d| d.build(watch))
             .map_err(plain)?;
         scene.notes.iter().for_each(|n| watch.say(n));
         watch.stage("predict");
-        let p = probe(&scene, &first, by, watch)?;
+        let probe = Probe { coarse: &scene, coarser: by, first, growth, picture };
+        let p = with_animations(probe.predict(&lattice, watch)?);
         tell_prediction(&p, making, watch)?;
         return refuse(&p, limit).map(|()| None);
     }

@@ -2,7 +2,8 @@
 
 use super::failure::{Failure, plain};
 use super::{Common, guard};
-use fieldgraft::job::Job;
+use fieldgraft::job::{Cancelled, Job};
+use fieldgraft::place;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::Arc;
@@ -19,6 +20,9 @@ pub struct Watch {
     pub verbose: bool,
 }
 
+/// How long the work may take to notice an interruption before the process ends without it.
+const PATIENCE: Duration = Duration::from_millis(150);
+
 /// Ticks of a bar; a stage's share is told in them.
 const TICKS: u64 = 1000;
 
@@ -26,9 +30,6 @@ impl Watch {
     /// Begins to listen for interruptions.
     pub fn new(common: &Common) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
-        let heard = stop.clone();
-        // without a handler the system's own ends the program, which leaves no half file either
-        let _ = ctrlc::set_handler(move || heard.store(true, Ordering::Relaxed));
         if guard::is_watched() {
             let orphan = stop.clone();
             std::thread::spawn(move || {
@@ -46,6 +47,13 @@ impl Watch {
             }
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
+        });
+        let (heard, shown) = (stop.clone(), bar.clone());
+        // without a handler the system's own ends the program, which leaves no half file either
+        let _ = ctrlc::set_handler(move || {
+            heard.store(true, Ordering::Relaxed);
+            std::thread::sleep(PATIENCE);
+            end(shown.as_ref());
         });
         Self { stop, bar, quiet: common.quiet, verbose: common.verbose }
     }
@@ -82,6 +90,17 @@ impl Watch {
             bar.finish_and_clear();
         }
     }
+}
+
+/// Ends an interrupted process whose work has not noticed: nothing is left half written.
+fn end(bar: Option<&ProgressBar>) {
+    place::abandon();
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    let failure = Failure::from(Cancelled);
+    failure.tell();
+    std::process::exit(i32::from(failure.code));
 }
 
 fn tell(message: &str) {

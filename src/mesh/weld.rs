@@ -77,11 +77,10 @@ pub(super) fn distinct_in_f32(mesh: &TriMesh) -> bool {
 
 /// For each used point the first used point at the same position (itself, if there is no earlier).
 pub(crate) fn twins(points: &[DVec3], used: &[bool]) -> Vec<u32> {
-    let mut keys: Vec<(u64, u32)> = (0..points.len() as u32)
-        .into_par_iter()
-        .filter(|&i| used[i as usize])
-        .map(|i| (hash(bits(points[i as usize])), i))
-        .collect();
+    // gathered in one list: many short ones, joined, would take twice the memory
+    let mut keys = Vec::with_capacity(used.iter().filter(|&&u| u).count());
+    let some = (0..points.len() as u32).filter(|&i| used[i as usize]);
+    keys.extend(some.map(|i| (hash(bits(points[i as usize])), i)));
     keys.par_sort_unstable();
     let mut twin: Vec<u32> = (0..points.len() as u32).collect();
     for run in keys.chunk_by_mut(|a, b| a.0 == b.0) {

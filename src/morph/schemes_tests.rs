@@ -142,6 +142,35 @@ fn transport_moves_a_ball_along_and_keeps_its_volume() {
     assert!(m.notes()[0].contains("lattice of"));
 }
 
+/// The last Gaussian reaches 30 samples; these are far farther apart, and the widest first one is
+/// needed too.
+#[test]
+fn transport_reaches_shapes_that_are_far_apart() {
+    for (far, samples) in [(90.0, 96), (400.0, 200)] {
+        let (to, r) = (DVec3::new(far, 0.0, 3.0), 8.0);
+        let shapes = vec![balls("a", &[([0.0; 3], r)]), balls("b", &[(to.to_array(), r)])];
+        let m = morph(shapes, Scheme::Transport { samples }).unwrap();
+        for t in [0.5, 0.8] {
+            let f = m.at(t, &Quiet).unwrap();
+            let (mut count, mut sum) = (0.0, DVec3::ZERO);
+            let n = DVec3::new(far + 40.0, 41.0, 41.0).as_ivec3();
+            for i in 0..n.x * n.y * n.z {
+                let q = glam::IVec3::new(i % n.x, i / n.x % n.y, i / (n.x * n.y));
+                let p = q.as_dvec3() - DVec3::new(20.0, 20.0, 18.0);
+                if f.value(p) < 0.0 {
+                    (count, sum) = (count + 1.0, sum + p);
+                }
+            }
+            let volume = 4.0 / 3.0 * PI * r.powi(3);
+            assert!((count / volume - 1.0f64).abs() < 0.2, "{far}, {t}: {}", count / volume);
+            // a sample is some 2 mm
+            assert!((sum / count).distance(to * t) < 1.0, "{far}, {t}: centre {}", sum / count);
+        }
+        let notes = m.notes();
+        assert!(notes.len() == 2 && notes[1].contains("so far apart"), "{notes:?}");
+    }
+}
+
 #[test]
 fn transport_needs_something_to_move() {
     struct Sheet;

@@ -20,6 +20,11 @@ const COARSE: f32 = 1.4;
 /// surfaces shade themselves in stripes; more, and light leaks into corners.
 const LIFT: f32 = 1.3;
 
+/// Texels along the longer side of a depth map for a picture of that many pixels along its own.
+pub(super) fn texels(pixels: f32) -> f32 {
+    (pixels * TEXELS).clamp(FEWEST, MOST).round()
+}
+
 /// A place to light.
 #[derive(Clone, Copy)]
 pub(super) struct Spot {
@@ -41,7 +46,7 @@ impl<'a> Caster<'a> {
     /// For a picture with that many pixels along its longer side.
     pub fn of(scene: &'a Scene, pixels: f32) -> Self {
         let corners = scene.corners();
-        let texels = (pixels * TEXELS).clamp(FEWEST, MOST).round();
+        let texels = texels(pixels);
         // With fewer faces than a map has texels a coarser copy saves nothing.
         if (scene.faces.len() as f32) < texels * texels {
             let (points, faces) = (Cow::from(&scene.points), Cow::from(&scene.faces));

@@ -1,7 +1,7 @@
 //! The studio: light from many directions, each with a depth map of what it reaches first.
 
 use super::camera::Camera;
-use super::depth_map::{Caster, DepthMap, Spot};
+use super::depth_map::{Caster, DepthMap, Spot, texels};
 use super::scene::Scene;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -27,6 +27,17 @@ pub(super) struct Lights {
     lights: Vec<Light>,
     /// What an open floor receives.
     open: Vec3,
+}
+
+/// Memory that drawing a picture of that size takes whatever the mesh, bytes: its lights' depth maps
+/// and the picture itself.
+pub fn working_memory([width, height]: [u32; 2]) -> f64 {
+    /// How much of a square a map covers, on average over directions.
+    const COVER: f64 = 0.85;
+    let side = width.max(height) as f32;
+    let map = |pixels: f32| f64::from(texels(pixels)).powi(2) * 4.0 * COVER;
+    let sky = (ABOVE + BELOW) as f64 * map(side * SKY_DETAIL);
+    sky + KEY as f64 * map(side) + 3.0 * f64::from(width) * f64::from(height)
 }
 
 impl Lights {

@@ -37,6 +37,7 @@ mod sheet;
 pub use animation::{Film, is_animation};
 pub use camera::View;
 pub use image::{Image, save_png};
+pub use light::working_memory;
 pub use sheet::{Cell, Layout, sheet};
 
 use crate::mesh::TriMesh;

@@ -13,6 +13,7 @@ mod primitive;
 mod shapes;
 mod solid;
 mod source;
+mod strict;
 pub mod surface;
 mod time;
 mod value;

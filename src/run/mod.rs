@@ -15,7 +15,7 @@ pub use animation::{AnimationReport, MOST_FRAMES, Playing, Reel, animation_memor
 pub use feet::Feet;
 pub use files::{Names, place_text, time_word};
 pub use frame::{FrameResult, Work, make};
-pub use predict::{Prediction, coarsening, predict, predict_one, probe};
+pub use predict::{Growth, Prediction, Probe, coarsening, predict, predict_one};
 pub use report::{FrameReport, Report, Seconds, ShapeReport};
 pub use system::Machine;
 
@@ -156,6 +156,7 @@ pub fn run(
             told(&frame);
             report.frames.push(frame);
         }
+        variant.forget();
         report.animations.extend(reel.finish(job)?);
     }
     report.seconds_total += start.elapsed().as_secs_f64();

@@ -4,7 +4,9 @@ use crate::field::sample::sample;
 use crate::grid::{BRICK, Lattice};
 use crate::iso::{Mesher, extract};
 use crate::job::{Cancelled, Job};
+use crate::memory::{peak_memory, resident_memory};
 use crate::morph::MorphError;
+use crate::picture::working_memory;
 use crate::recipe::MorphEntry;
 use crate::scene::{Draft, Scene};
 use serde::Serialize;
@@ -45,71 +47,137 @@ const TRIANGLES_PER_CELL: f64 = 4.0;
 const BRICK_ROOM: f64 = 2.5;
 /// Triangles of a brick at most, every cell crossed.
 const MOST_A_BRICK: f64 = 512.0 * TRIANGLES_PER_CELL;
+/// A brick of the lattice, whatever it holds.
+const PLACE_BYTES: f64 = 16.0;
 /// Samples of a brick, and what is held beside them while it is meshed.
 const BRICK_BYTES: f64 = 512.0 * 4.0 + 256.0;
-/// A triangle and its half point, while the mesh is made, checked, written and read back.
-const TRIANGLE_BYTES: f64 = 300.0;
-/// The program, its threads and the input meshes.
-const BASE_BYTES: f64 = 40e6;
+/// A triangle and its half point.
+const TRIANGLE_BYTES: f64 = 24.0;
+/// What a triangle takes beside that while the mesh is checked, or written and read back.
+const WORK_BYTES: f64 = 95.0;
+/// The same while loose pieces are dropped.
+const SWEPT_BYTES: f64 = 180.0;
+/// What a triangle takes while it is drawn: single precision, normals, its place in bands.
+const DRAWN_BYTES: f64 = 50.0;
+/// What a triangle of an input takes while the field of its mesh is made.
+const FIELD_BYTES: f64 = 900.0;
+/// What a triangle of a surface that moves takes from frame to frame.
+const KEPT_BYTES: f64 = 250.0;
+/// Triangles of a surface's own mesh for one of the result, roughly.
+const OWN_SHARE: f64 = 0.3;
 /// The sampled form of a shape: leaves of 9³ samples, some of them coarse.
 const LEAF_BYTES: f64 = 729.0 * 4.0 * 1.6;
+/// The program and its threads, where the system does not tell what they have.
+const PROGRAM_BYTES: f64 = 12e6;
 
-/// From the shapes' areas alone: rough, but known before anything large is made.
-pub fn predict(draft: &Draft) -> Prediction {
+/// What is known before anything large is made.
+struct Known<'a> {
+    frames: u64,
+    lattice: &'a Lattice,
+    /// Taken already: the program, its threads, inputs, and what was worked out on the way.
+    taken: f64,
+    /// Held beside each frame: the shapes.
+    held: f64,
+    /// Taken while shapes and what methods need are made, and given back after.
+    passing: f64,
+    /// Free in what is taken, for frames to use again.
+    free: f64,
+    /// Whether loose pieces are dropped.
+    swept: bool,
+    /// Width and height of the pictures, if there are any.
+    picture: Option<[u32; 2]>,
+}
+
+impl Known<'_> {
+    /// However much surface lies folded into it, the lattice holds no more.
+    fn prediction(&self, size: Size) -> Prediction {
+        let bricks: f64 =
+            self.lattice.size.iter().map(|&n| (f64::from(n) / f64::from(BRICK)).ceil()).product();
+        let size = Size {
+            active_bricks: size.active_bricks.min(bricks),
+            triangles: size.triangles.min(bricks * MOST_A_BRICK),
+        };
+        Prediction {
+            frames: self.frames,
+            voxel_mm: self.lattice.step,
+            bricks: bricks as u64,
+            active_bricks: size.active_bricks as u64,
+            triangles: size.triangles as u64,
+            memory_bytes: self.peak(bricks, size) as u64,
+            file_bytes: (84.0 + 50.0 * size.triangles) as u64,
+        }
+    }
+
+    /// The larger of two peaks: while shapes are made, and while a frame is.
+    fn peak(&self, bricks: f64, size: Size) -> f64 {
+        let samples = bricks * PLACE_BYTES + size.active_bricks * BRICK_BYTES;
+        let drawing = |p| working_memory(p) + size.triangles * DRAWN_BYTES;
+        let checking = size.triangles * if self.swept { SWEPT_BYTES } else { WORK_BYTES };
+        let work = checking.max(self.picture.map_or(0.0, drawing));
+        let frame = samples + size.triangles * TRIANGLE_BYTES + work;
+        self.taken + self.held + (frame - self.free).max(self.passing)
+    }
+}
+
+/// From the shapes' areas alone: rough, but known before anything large is made. `picture` is the
+/// size of pictures, if there will be any.
+pub fn predict(draft: &Draft, picture: Option<[u32; 2]>) -> Prediction {
     let h = draft.step();
-    let squares = |area: f64| area / (h * h);
     let areas = draft.areas();
     let largest = areas.iter().copied().fold(0.0, f64::max);
-    let bricks =
-        |area: f64| squares(area) * CELLS_PER_SQUARE / f64::from(BRICK * BRICK) * BRICK_ROOM;
     // a hybrid that unites its parents has at most the surface of all of them
     let hybrid = areas.iter().sum::<f64>().min(2.0 * largest);
-    let size = Size {
-        active_bricks: bricks(hybrid),
-        triangles: squares(hybrid) * CELLS_PER_SQUARE * TRIANGLES_PER_CELL,
-    };
-    let blocks = |b: &crate::num::Aabb| (b.size() / (h * 8.0)).ceil().element_product();
-    let tables: f64 = draft.boxes().iter().map(|b| blocks(b) * 4.0).sum();
-    let shapes = areas.iter().map(|&a| bricks(a) * LEAF_BYTES).sum::<f64>() + tables;
     let times = |v: &MorphEntry| v.t.as_ref().map_or(1, |t| t.0.len() as u64);
-    let frames = draft.recipe().variants().iter().map(|(_, v)| times(v)).sum();
-    let held = shapes + draft.method_bytes();
-    total(frames, &Lattice::covering(&draft.domain(), h), size, held)
+    let surfaces = size(draft.largest_surface(), h).triangles * OWN_SHARE;
+    let known = Known {
+        frames: draft.recipe().variants().iter().map(|(_, v)| times(v)).sum(),
+        lattice: &Lattice::covering(&draft.domain(), h),
+        taken: taken(),
+        held: sampled_bytes(draft, h),
+        passing: (surfaces.max(draft.largest_mesh() as f64) * FIELD_BYTES)
+            .max(draft.method_bytes()),
+        free: 0.0,
+        swept: !draft.recipe().features.is_empty(),
+        picture,
+    };
+    known.prediction(size(hybrid, h))
 }
 
 /// From the area (mm²) of one shape that is sampled directly.
 pub fn predict_one(area: f64, lattice: &Lattice) -> Prediction {
-    let squares = area / (lattice.step * lattice.step);
-    let cells = squares * CELLS_PER_SQUARE;
-    let size = Size {
-        active_bricks: cells / f64::from(BRICK * BRICK) * BRICK_ROOM,
-        triangles: cells * TRIANGLES_PER_CELL,
+    let known = Known {
+        frames: 1,
+        lattice,
+        taken: taken(),
+        held: 0.0,
+        passing: 0.0,
+        free: 0.0,
+        swept: true,
+        picture: None,
     };
-    total(1, lattice, size, 0.0)
+    known.prediction(size(area, lattice.step))
 }
 
-fn total(frames: u64, lattice: &Lattice, size: Size, shapes: f64) -> Prediction {
-    let bricks: f64 =
-        lattice.size.iter().map(|&n| (f64::from(n) / f64::from(BRICK)).ceil()).product();
-    // however much surface lies folded into it, the lattice holds no more
-    let size = Size {
-        active_bricks: size.active_bricks.min(bricks),
-        triangles: size.triangles.min(bricks * MOST_A_BRICK),
-    };
-    let memory = BASE_BYTES
-        + shapes
-        + bricks * 16.0
-        + size.active_bricks * BRICK_BYTES
-        + size.triangles * TRIANGLE_BYTES;
-    Prediction {
-        frames,
-        voxel_mm: lattice.step,
-        bricks: bricks as u64,
-        active_bricks: size.active_bricks as u64,
-        triangles: size.triangles as u64,
-        memory_bytes: memory as u64,
-        file_bytes: (84.0 + 50.0 * size.triangles) as u64,
-    }
+/// Memory that this process has, bytes.
+fn taken() -> f64 {
+    resident_memory().map_or(PROGRAM_BYTES, |b| b as f64)
+}
+
+/// Bricks along a surface of that area (mm²) in cells of `h` mm.
+fn bricks(area: f64, h: f64) -> f64 {
+    area / (h * h) * CELLS_PER_SQUARE / f64::from(BRICK * BRICK) * BRICK_ROOM
+}
+
+fn size(area: f64, h: f64) -> Size {
+    let cells = area / (h * h) * CELLS_PER_SQUARE;
+    Size { active_bricks: bricks(area, h), triangles: cells * TRIANGLES_PER_CELL }
+}
+
+/// The sampled forms of all shapes with cells of `h` mm.
+fn sampled_bytes(draft: &Draft, h: f64) -> f64 {
+    let blocks = |b: &crate::num::Aabb| (b.size() / (h * 8.0)).ceil().element_product();
+    let tables: f64 = draft.boxes().iter().map(|b| blocks(b) * 4.0).sum();
+    draft.areas().iter().map(|&a| bricks(a, h) * LEAF_BYTES).sum::<f64>() + tables
 }
 
 /// How many times larger cells a scene may have that predicts one of these cells: at most 4, and
@@ -118,43 +186,94 @@ pub fn coarsening(draft: &Draft) -> f64 {
     (draft.longest() / draft.step() / 64.0).clamp(1.0, 4.0)
 }
 
-/// From a scene built with cells `coarser` times larger: the largest frame, scaled up with the
-/// surface.
-///
-/// # Errors
-/// Cancelled.
-pub fn probe(
-    coarse: &Scene,
-    first: &Prediction,
-    coarser: f64,
-    job: &dyn Job,
-) -> Result<Prediction, Cancelled> {
-    let grow = coarser * coarser;
-    let mut most = Size::default();
-    for v in &coarse.variants {
-        for &t in &v.times {
-            let morph = match v.morph(t, job) {
-                Ok(morph) => morph,
-                Err(MorphError::Cancelled(stop)) => return Err(stop),
-                Err(_) => continue,
-            };
-            let field = morph.at(t, job)?;
-            let samples = sample(&*field, coarse.lattice, job)?;
-            let mesh = extract(&samples.bricks, Mesher::Cone, job)?;
-            let bricks = samples.stats.active_bricks as f64;
-            most.active_bricks = most.active_bricks.max(bricks * grow);
-            most.triangles = most.triangles.max(mesh.faces.len() as f64 * grow);
-        }
+/// What a coarse scene is looked at for.
+pub struct Probe<'a> {
+    /// The scene, with cells `coarser` times as large.
+    pub coarse: &'a Scene,
+    /// How many times as large its cells are.
+    pub coarser: f64,
+    /// What was predicted from the areas.
+    pub first: Prediction,
+    /// What the run takes beyond it.
+    pub growth: Growth,
+    /// Width and height of pictures, if there will be any.
+    pub picture: Option<[u32; 2]>,
+}
+
+/// What a run takes beyond a scene with larger cells, bytes.
+#[derive(Clone, Copy, Debug)]
+pub struct Growth {
+    /// Held beside each frame: sampled forms, and what shapes that move keep.
+    held: f64,
+    /// While a shape, or what a method needs, is made.
+    passing: f64,
+    /// What the process had before any field was made, and the sampled forms of the coarse scene.
+    before: f64,
+}
+
+impl Growth {
+    /// From a scene with cells `coarser` times as large to that of the draft.
+    pub fn of(draft: &Draft, coarser: f64) -> Self {
+        let h = draft.step();
+        let coarse = sampled_bytes(draft, h * coarser);
+        let before = taken() + coarse;
+        let sampled = sampled_bytes(draft, h) - coarse;
+        let (triangles, moves) = draft.tessellated();
+        let kept = if moves { triangles as f64 * KEPT_BYTES } else { 0.0 };
+        let passing = (triangles as f64 * FIELD_BYTES).max(draft.method_bytes());
+        Self { held: sampled + kept, passing, before }
     }
-    let fixed = first.memory_bytes as f64
-        - first.active_bricks as f64 * BRICK_BYTES
-        - first.triangles as f64 * TRIANGLE_BYTES;
-    Ok(Prediction {
-        active_bricks: most.active_bricks as u64,
-        triangles: most.triangles as u64,
-        memory_bytes: (fixed + most.active_bricks * BRICK_BYTES + most.triangles * TRIANGLE_BYTES)
-            as u64,
-        file_bytes: (84.0 + 50.0 * most.triangles) as u64,
-        ..*first
-    })
+}
+
+impl Probe<'_> {
+    /// The largest of some frames, scaled up with the surface; beside it what this process has taken
+    /// to come so far, which the run will take too: program, inputs, fields, what searches leave.
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn predict(&self, lattice: &Lattice, job: &dyn Job) -> Result<Prediction, Cancelled> {
+        let (before, now) = (peak_memory().map(|b| b as f64), taken());
+        let most = self.largest(job)?;
+        let known = Known {
+            frames: self.first.frames,
+            lattice,
+            // with what shapes that move keep from time to time
+            taken: taken().max(now),
+            held: self.growth.held,
+            passing: before.map_or(0.0, |peak| peak - now).max(self.growth.passing),
+            // fields leave holes, which pictures and meshes fill by about a half
+            free: (now - self.growth.before).max(0.0) / 2.0,
+            swept: self.coarse.variants.iter().any(|v| v.crumbs > 0.0),
+            picture: self.picture,
+        };
+        Ok(known.prediction(most))
+    }
+
+    fn largest(&self, job: &dyn Job) -> Result<Size, Cancelled> {
+        let grow = self.coarser * self.coarser;
+        let mut most = Size::default();
+        for v in &self.coarse.variants {
+            for t in some(&v.times) {
+                let morph = match v.morph(t, job) {
+                    Ok(morph) => morph,
+                    Err(MorphError::Cancelled(stop)) => return Err(stop),
+                    Err(_) => continue,
+                };
+                let field = morph.at(t, job)?;
+                let samples = sample(&*field, self.coarse.lattice, job)?;
+                let mesh = extract(&samples.bricks, Mesher::Cone, job)?;
+                let bricks = samples.stats.active_bricks as f64;
+                most.active_bricks = most.active_bricks.max(bricks * grow);
+                most.triangles = most.triangles.max(mesh.faces.len() as f64 * grow);
+            }
+        }
+        Ok(most)
+    }
+}
+
+/// The first, the middle and the last: surfaces change little between times.
+fn some(times: &[f64]) -> Vec<f64> {
+    let mut at = vec![0, times.len() / 2, times.len().saturating_sub(1)];
+    at.dedup();
+    at.into_iter().filter_map(|i| times.get(i).copied()).collect()
 }

@@ -1,6 +1,7 @@
 //! Shapes read and placed: enough to know how large the work will be.
 
 use super::auto::{self, Featured, Search};
+use super::body::Body;
 use super::live::LiveShape;
 use super::live::{self, Exact, Placed, Stop, Want};
 use super::variant::{Parts, Variant, asked};
@@ -93,6 +94,39 @@ impl Draft {
     /// Area of the triangles of each shape, mm².
     pub fn areas(&self) -> Vec<f64> {
         self.placed.iter().map(|p| p.area).collect()
+    }
+
+    /// Triangles of the largest mesh among the shapes.
+    pub fn largest_mesh(&self) -> usize {
+        let faces = |p: &Placed| match &p.body {
+            Body::Mesh(mesh) => mesh.faces.len(),
+            _ => 0,
+        };
+        self.placed.iter().map(faces).max().unwrap_or(0)
+    }
+
+    /// Area of the largest surface among the shapes, mm².
+    pub fn largest_surface(&self) -> f64 {
+        let surfaces = self.placed.iter().filter(|p| matches!(p.body, Body::Surface(_)));
+        surfaces.map(|p| p.area).fold(0.0, f64::max)
+    }
+
+    /// Triangles that the largest surface among the shapes is made from, once it is, and whether
+    /// some shape moves: it keeps them from frame to frame.
+    pub fn tessellated(&self) -> (usize, bool) {
+        let surfaces = self.placed.iter().filter_map(|p| match &p.body {
+            Body::Surface(s) => Some((s, self.uses[&p.name].times.first().copied())),
+            _ => None,
+        });
+        let counted = surfaces.map(|(s, t)| (s.triangles(t.unwrap_or(0.5), self.step), s.moves()));
+        let between = |v: &(String, MorphEntry)| v.1.method.is_some_and(|m| m.surface().is_some());
+        let pair = self.recipe.variants().iter().any(between);
+        counted.fold((0, pair), |(n, moves), (m, also)| (n.max(m), moves || also))
+    }
+
+    /// The lattice that results are sampled on, as far as it is known without the fields.
+    pub fn lattice(&self) -> Lattice {
+        Lattice::covering(&self.domain(), self.step)
     }
 
     /// The boxes of the shapes, mm.

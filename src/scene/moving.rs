@@ -51,6 +51,8 @@ impl Moving {
         if let Some(moment) = kept.filter(|m| m.t == t) {
             return Ok(moment);
         }
+        // two at once would take twice the memory
+        self.forget();
         job.stage(&format!("shape {}", self.name));
         let (exact, _) = self.shape.field(t, self.step, job).map_err(|e| match e {
             SkinnedError::Cancelled(c) => MorphError::Cancelled(c),
@@ -59,6 +61,13 @@ impl Moving {
         let moment = Arc::new(Moment { t, step: self.step, exact, sampled: OnceLock::new() });
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(moment.clone());
         Ok(moment)
+    }
+}
+
+impl Moving {
+    /// Lets go of what is kept of the last time.
+    pub fn forget(&self) {
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
 }
 

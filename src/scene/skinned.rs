@@ -280,6 +280,11 @@ impl Skinned {
         })
     }
 
+    /// Triangles that the solid at `t` is made from for cells of `step` mm.
+    pub fn triangles(&self, t: f64, step: f64) -> usize {
+        self.mesh(t, self.how.tolerance(step)).map_or(0, |m| m.faces.len())
+    }
+
     /// The solid at `t` for cells of `step` mm, and what the surface is.
     pub fn field(&self, t: f64, step: f64, job: &dyn Job) -> Result<(Shared, Sides), SkinnedError> {
         let mesh = self.mesh(t, self.how.tolerance(step))?;

@@ -129,6 +129,13 @@ impl Variant {
         build(plan)
     }
 
+    /// Lets go of what a shape that moves keeps of its last time; the next is made anew.
+    pub fn forget(&self) {
+        if let Way::Moving(shape) | Way::Pair(shape) = &self.way {
+            shape.forget();
+        }
+    }
+
     /// Where its shapes' feet should stand at `t`; none where that is not known.
     pub fn feet(&self, t: f64) -> Vec<Foot> {
         match &self.way {

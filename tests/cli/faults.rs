@@ -54,25 +54,48 @@ fn halves(folder: &Folder) -> Vec<String> {
     names.filter(|n| !whole(&folder.join(n))).collect()
 }
 
-/// `FIELDGRAFT_KILLS=200` kills as often.
+/// Waits for a moment at which a file is being written: a hidden one is there. Whether there was one
+/// before the run ended.
+#[cfg(unix)]
+fn writing(folder: &Folder, child: &mut std::process::Child) -> bool {
+    while child.try_wait().unwrap().is_none() {
+        if folder.names().iter().any(|n| n.starts_with(".fieldgraft-")) {
+            return true;
+        }
+    }
+    false
+}
+
+/// Every other kill is aimed at the writing of a file; what an earlier kill left is taken away for
+/// it, and for the others it stays. `FIELDGRAFT_KILLS=200` kills as often.
 #[cfg(unix)]
 #[test]
 fn a_killed_run_leaves_no_half_file_and_the_next_clears_up() {
     let kills = std::env::var("FIELDGRAFT_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(6);
     let folder = folder();
     let mut random = Random::new(6);
-    let mut hidden = 0;
-    for _ in 0..kills {
+    let (mut hidden, mut aimed) = (0, 0);
+    for nth in 0..kills {
+        if nth % 2 == 1 {
+            let names = folder.names().into_iter().filter(|n| n.starts_with(".fieldgraft-"));
+            names.for_each(|n| fs::remove_file(folder.join(&n)).unwrap());
+        }
         let mut child =
             folder.command(&MANY).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(random.below(1500) as u64));
+        if nth % 2 == 0 {
+            std::thread::sleep(Duration::from_millis(random.below(1500) as u64));
+        } else {
+            // some write first and are caught later: of eleven meshes and pictures any
+            std::thread::sleep(Duration::from_millis(random.below(600) as u64));
+            aimed += usize::from(writing(&folder, &mut child));
+        }
         // on Unix this is kill -9; the run may have ended already
         let _ = child.kill();
         child.wait().unwrap();
         assert_eq!(halves(&folder), Vec::<String>::new());
         hidden += folder.names().iter().filter(|n| n.starts_with(".fieldgraft-")).count();
     }
-    println!("{kills} kills left {hidden} hidden files, each gone with the next run");
+    println!("{kills} kills, {aimed} while a file was written, left {hidden} hidden files");
     folder.put(".fieldgraft-4000000000-abc.part", "half");
     folder.run(&MANY).ends(0);
     let left: Vec<String> = folder.names().into_iter().filter(|n| n.starts_with('.')).collect();
@@ -102,6 +125,31 @@ fn interrupted_at_any_moment_it_says_so_and_clears_up() {
         assert_eq!(halves(&folder), Vec::<String>::new());
         assert!(!folder.names().iter().any(|n| n.starts_with('.')), "{:?}", folder.names());
     }
+}
+
+/// `check` asks nobody between its steps; it ends all the same.
+#[cfg(unix)]
+#[test]
+fn work_that_does_not_listen_is_ended_too() {
+    let n = 250;
+    let point = |i: usize| format!("v {} {} {}\n", i % n, i / n, i * i % 7);
+    let face = |i: usize| {
+        let a = i / (n - 1) * n + i % (n - 1) + 1;
+        format!("f {a} {} {} {}\n", a + 1, a + n + 1, a + n)
+    };
+    let text: String = (0..n * n).map(point).chain((0..(n - 1) * (n - 1)).map(face)).collect();
+    let folder = Folder::new();
+    folder.put("hills.obj", &text);
+    let mut child = folder.command(&["check", "hills.obj"]);
+    let child = child.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(150));
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let done = child.wait_with_output().unwrap();
+    let text = String::from_utf8_lossy(&done.stderr).into_owned();
+    // it may have been done already, or not have begun
+    let said = text.matches("error: interrupted").count();
+    assert!(matches!(done.status.code(), Some(130 | 0) | None), "{:?} {text}", done.status);
+    assert_eq!(said, usize::from(done.status.code() == Some(130)), "{text}");
 }
 
 /// Runs the command under a limit of the shell's.

@@ -206,7 +206,7 @@ fn documents() -> Vec<Case> {
 }
 
 /// Buffers that are not in the folder, or are no files.
-fn places() -> Vec<Case> {
+pub fn places() -> Vec<Case> {
     let of = |what: &str, uri: &str| {
         let json =
             JSON.replacen(r#""byteLength":72"#, &format!(r#""uri":"{uri}","byteLength":72"#), 1);

@@ -5,6 +5,7 @@
 mod gltf;
 mod links;
 mod meshes;
+mod opened;
 mod recipes;
 mod surfaces;
 

@@ -70,36 +70,49 @@ impl Sampled {
         job: &dyn Job,
     ) -> Result<(), Cancelled> {
         let far = &near_order()[CORE..];
-        let fill = |leaf: usize| {
-            job::check(job)?;
-            let Leaf { corner, level } = self.leaves[leaf];
-            let (mut found, mut asked, mut at) = (Vec::new(), Vec::new(), Vec::new());
-            for &n in far {
-                let cell = corner + place(n) * (1 << level);
-                let other = self.leaf_at(cell);
-                let from = cell - self.leaves[other].corner;
-                let outside = (cell.cmpge(self.table_size * CELLS)).any();
-                if !outside && self.leaves[other].level == level {
-                    let o = from.map(|x| x >> level).as_usizevec3();
-                    found.push((n, self.data[other * LEAF + o.x + SIDE * (o.y + SIDE * o.z)]));
-                } else {
-                    asked.push(n);
-                    at.push(grid.point(cell));
+        for first in (0..self.leaves.len()).step_by(AT_ONCE) {
+            let some = first..(first + AT_ONCE).min(self.leaves.len());
+            let fill = |leaf| self.far_faces(leaf, far, grid, field, job);
+            let faces: Vec<Vec<(usize, f32)>> =
+                some.into_par_iter().map(fill).collect::<Result<_, Cancelled>>()?;
+            for (leaf, faces) in (first..).zip(faces) {
+                for (n, f) in faces {
+                    self.data[leaf * LEAF + n] = f;
                 }
-            }
-            let mut out = vec![0.0; at.len()];
-            field.values(&at, &mut out);
-            found.extend(asked.into_iter().zip(out).map(|(n, f)| (n, f as f32)));
-            Ok(found)
-        };
-        let faces: Vec<Vec<(usize, f32)>> =
-            (0..self.leaves.len()).into_par_iter().map(fill).collect::<Result<_, Cancelled>>()?;
-        for (leaf, faces) in faces.into_iter().enumerate() {
-            for (n, f) in faces {
-                self.data[leaf * LEAF + n] = f;
             }
         }
         Ok(())
+    }
+
+    /// The samples of a leaf's far faces.
+    fn far_faces(
+        &self,
+        leaf: usize,
+        far: &[usize],
+        grid: &Grid,
+        field: &dyn Field,
+        job: &dyn Job,
+    ) -> Result<Vec<(usize, f32)>, Cancelled> {
+        job::check(job)?;
+        let Leaf { corner, level } = self.leaves[leaf];
+        let (mut found, mut asked, mut at) = (Vec::with_capacity(far.len()), vec![], vec![]);
+        for &n in far {
+            let cell = corner + place(n) * (1 << level);
+            let other = self.leaf_at(cell);
+            let from = cell - self.leaves[other].corner;
+            let outside = (cell.cmpge(self.table_size * CELLS)).any();
+            if !outside && self.leaves[other].level == level {
+                let o = from.map(|x| x >> level).as_usizevec3();
+                found.push((n, self.data[other * LEAF + o.x + SIDE * (o.y + SIDE * o.z)]));
+            } else {
+                asked.push(n);
+                at.push(grid.point(cell));
+            }
+        }
+        let mut out = vec![0.0; at.len()];
+        field.values(&at, &mut out);
+        found.extend(asked.into_iter().zip(out).map(|(n, f)| (n, f as f32)));
+        Ok(found)
     }
 
     /// Gives fine leaves the values of coarser neighbours on common faces, coarsest first.
@@ -273,6 +286,10 @@ impl Grid {
         Ok(data)
     }
 }
+
+/// Leaves whose far faces are held at once, beside the samples: a face sample takes four times the
+/// memory here.
+const AT_ONCE: usize = 1024;
 
 /// Samples of a leaf without its far faces.
 const CORE: usize = (SIDE - 1) * (SIDE - 1) * (SIDE - 1);

@@ -13,7 +13,6 @@ use super::{
     TriMesh,
     error::MeshError,
     read::{Format, kind_name, parse},
-    weld::welded,
 };
 use crate::place::beside;
 use std::{
@@ -139,17 +138,14 @@ fn same(bytes: &[u8], target: Target, mesh: &TriMesh) -> Result<(), String> {
         return Ok(());
     }
     let format = match target {
-        Target::Stl => Format::Stl,
+        Target::Stl => return stl::same(bytes, mesh),
         Target::Obj => Format::Obj,
         Target::Ply => Format::Ply,
         Target::Glb => Format::Gltf,
     };
     let back = parse(bytes, format, Path::new(""), format.up(), format.unit());
     let (back, _) = back.map_err(|f| format!("{}: {}", f.place, f.why))?;
-    match target {
-        Target::Stl => same_welded(&back, mesh),
-        _ => same_lists(&back, mesh),
-    }
+    same_lists(&back, mesh)
 }
 
 fn same_lists(back: &TriMesh, mesh: &TriMesh) -> Result<(), String> {
@@ -174,31 +170,6 @@ fn differs<T: PartialEq + Display>(what: &str, back: T, mesh: T) -> Result<(), S
         return Ok(());
     }
     Err(format!("read back, {what}: {back}, but the mesh has {mesh}"))
-}
-
-/// Whether welding the soup gives the mesh: each of its points one point, each face a face.
-fn same_welded(soup: &TriMesh, mesh: &TriMesh) -> Result<(), String> {
-    const FREE: u32 = u32::MAX;
-    let (back, counts) = welded(soup);
-    if counts.collapsed > 0 {
-        let n = counts.collapsed;
-        return Err(format!("{n} faces lose a corner when positions are rounded to f32"));
-    }
-    let mut to_mesh = vec![FREE; back.points.len()];
-    let mut to_back = vec![FREE; mesh.points.len()];
-    differs("faces", back.faces.len(), mesh.faces.len())?;
-    for (b, m) in back.faces.iter().flatten().zip(mesh.faces.iter().flatten()) {
-        let (there, here) = (&mut to_back[*m as usize], &mut to_mesh[*b as usize]);
-        if *here != FREE && *here != *m {
-            let at = back.points[*b as usize];
-            return Err(format!("points {here} and {m} of the mesh coincide in f32, at {at}"));
-        }
-        if *there != FREE && *there != *b {
-            return Err(format!("point {m} of the mesh comes back as two"));
-        }
-        (*there, *here) = (*b, *m);
-    }
-    Ok(())
 }
 
 /// Writes beside the place and renames into it, so that no half file is ever there.

@@ -1,6 +1,6 @@
-use super::rounded;
+use super::{differs, rounded};
 use crate::mesh::TriMesh;
-use crate::mesh::weld::distinct_in_f32;
+use crate::mesh::weld::{distinct_in_f32, welded};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -42,6 +42,47 @@ pub(super) fn holds(bytes: &[u8], mesh: &TriMesh) -> bool {
         f[0] != f[1] && f[1] != f[2] && f[2] != f[0] && corners.eq(record[12..48].iter().copied())
     };
     bytes[84..].par_chunks_exact(50).zip(&mesh.faces).all(as_written) && distinct_in_f32(mesh)
+}
+
+/// What [`holds`] found wrong, in words: whether the file has each face's corners, and welding them gives
+/// the points of the mesh again.
+/// Compared facet by facet: a soup of points would take more memory than all that made it.
+pub(super) fn same(bytes: &[u8], mesh: &TriMesh) -> Result<(), String> {
+    let count = bytes.get(80..84).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
+    let facets = bytes.get(84..).unwrap_or_default().chunks_exact(50);
+    differs("faces", count.unwrap_or_default() as usize, mesh.faces.len())?;
+    differs("facets", facets.len(), mesh.faces.len())?;
+    for (i, (facet, face)) in facets.zip(&mesh.faces).enumerate() {
+        let floats = facet[12..48].chunks_exact(4).map(|b| [b[0], b[1], b[2], b[3]]);
+        let wanted = face.map(|v| rounded(mesh, v));
+        if !floats.map(f32::from_le_bytes).eq(wanted.into_iter().flatten()) {
+            return Err(format!("face {i} does not come back as {wanted:?}"));
+        }
+    }
+    let points = mesh.points.iter().map(|p| p.as_vec3().as_dvec3()).collect();
+    let single = TriMesh { points, faces: mesh.faces.clone() };
+    let (_, counts) = welded(&single);
+    if counts.collapsed > 0 {
+        let n = counts.collapsed;
+        return Err(format!("{n} faces lose a corner when positions are rounded to f32"));
+    }
+    if counts.merged > 0 {
+        return Err(coinciding(&single));
+    }
+    Ok(())
+}
+
+/// Names two used points at one place.
+fn coinciding(mesh: &TriMesh) -> String {
+    let mut used: Vec<u32> = mesh.faces.iter().flatten().copied().collect();
+    let bits = |v: u32| (mesh.points[v as usize] + 0.0).to_array().map(f64::to_bits);
+    used.sort_unstable_by_key(|&v| (bits(v), v));
+    used.dedup();
+    let pairs = used.windows(2).filter(|w| bits(w[0]) == bits(w[1]));
+    let pair = pairs.min_by_key(|w| w[0]);
+    let Some(&[a, b]) = pair else { return "points of the mesh coincide in f32".to_owned() };
+    let at = mesh.points[a as usize];
+    format!("points {a} and {b} of the mesh coincide in f32, at {at}")
 }
 
 /// The unit normal of the rounded corners, zero for a triangle without area.

@@ -10,8 +10,10 @@
 //!
 //! The last factor takes the Gaussian's blur out again (Janati et al. 2020), so that a single shape
 //! is its own barycentre and edges stay sharp. γ falls to (2 samples)² in stages, the first of them on
-//! a lattice of half the samples a side: that finds the far moves first. The result is where the density exceeds the level that encloses the weighted
-//! mean volume, made a signed distance on the same lattice.
+//! a lattice of half the samples a side: that finds the far moves first. A Gaussian reaches some 15
+//! times its width; shapes farther apart begin with a wider one, and the stages end with the
+//! narrowest that still reaches. The result is where the density exceeds the level that encloses the
+//! weighted mean volume, made a signed distance on the same lattice.
 //!
 //! **The lattice** is coarser than the final one ([`Morph::notes`] says how coarse): what is thinner
 //! than a cell of it smears. A shape with all the weight is given back exactly, by itself and not by
@@ -27,12 +29,21 @@ use crate::grid::{Lattice, redistance};
 use crate::job::{Cancelled, Job};
 use crate::num::Aabb;
 use gauss::{Gauss, SHARE, flushed};
+use glam::DVec3;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 
-/// Widths of the Gaussian, in samples of their lattice, and the rounds at each at most: on the
-/// halved lattice, then on the whole one.
-const STAGES: [&[(f64, u32)]; 2] = [&[(4.0, 15), (2.0, 20)], &[(2.0, 40)]];
+/// Least and largest width of the Gaussian to begin with on the halved lattice, in its samples: the
+/// first, doubled until it reaches from shape to shape. The last does across any lattice.
+const FIRST: [f64; 2] = [4.0, 16.0];
+/// The width that the stages on either lattice end with, in its samples.
+const LAST: f64 = 2.0;
+/// Rounds of a stage at most: on the halved lattice, at its last width, on the whole one, and where
+/// no narrower one follows.
+const ROUNDS: [u32; 4] = [15, 20, 40, 100];
+/// Share of a shape's mass that a Gaussian may fail to reach.
+const LOST: f64 = 1e-3;
 /// A stage ends when the mass that a round moves falls below this share.
 const STILL: f64 = 1e-3;
 /// Samples along the longest side at least and at most.
@@ -52,6 +63,8 @@ pub(super) struct Transport {
     course: Course,
     lattice: Lattice,
     masses: OnceLock<Vec<Mass>>,
+    /// The widest Gaussian, in samples, that a time had to stop at.
+    stopped: AtomicU32,
 }
 
 /// The matter of a shape on the lattice.
@@ -79,7 +92,7 @@ impl Transport {
         if let Some(empty) = shapes.iter().find(|s| !whole::meet(&[&s.field], step / 16.0)) {
             return Err(MorphError::Hollow(empty.name.clone()));
         }
-        Ok(Self { shapes, course, lattice, masses: OnceLock::new() })
+        Ok(Self { shapes, course, lattice, masses: OnceLock::new(), stopped: AtomicU32::new(0) })
     }
 
     fn masses(&self, job: &dyn Job) -> Result<&[Mass], Cancelled> {
@@ -102,7 +115,10 @@ impl Morph for Transport {
         job.stage("transport");
         let taking: Vec<(&Mass, f64)> =
             masses.iter().zip(weights).filter(|(_, w)| *w > 0.0).collect();
-        let density = barycentre(self.lattice.size, &taking, job)?;
+        let Found { density, width } = barycentre(self.lattice.size, &taking, job)?;
+        if width > LAST {
+            self.stopped.fetch_max(width as u32, Relaxed);
+        }
         let volume: f64 = taking.iter().map(|(m, w)| m.volume * w).sum();
         let level = level(&density, volume);
         // as shares of the level, so that the samples fit f32
@@ -117,9 +133,18 @@ impl Morph for Transport {
 
     fn notes(&self) -> Vec<String> {
         let ([x, y, z], step) = (self.lattice.size, self.lattice.step);
-        vec![format!(
+        let mut notes = vec![format!(
             "transport: moved on a lattice of {x} x {y} x {z} samples, {step:.2} mm apart"
-        )]
+        )];
+        match self.stopped.load(Relaxed) {
+            0 => {}
+            width => notes.push(format!(
+                "transport: shapes so far apart are moved with a blur of {width} samples ({:.1} mm), \
+                 the least that reaches; edges are rounder",
+                f64::from(width) * step
+            )),
+        }
+        notes
     }
 }
 
@@ -160,8 +185,15 @@ fn halved(samples: u32) -> u32 {
 
 /// Scalings of a halved lattice on the whole one of `size`: their logarithms, which are potentials,
 /// are linear in between.
-fn doubled(coarse: &[f64], half: [u32; 3], size: [u32; 3]) -> Vec<f64> {
+fn doubled_scalings(coarse: &[f64], half: [u32; 3], size: [u32; 3]) -> Vec<f64> {
     let logs: Vec<f64> = coarse.iter().map(|x| x.max(1e-200).ln()).collect();
+    let mut fine = doubled(&logs, half, size);
+    fine.par_iter_mut().with_min_len(SHARE).for_each(|x| *x = flushed(x.exp()));
+    fine
+}
+
+/// Values of a halved lattice on the whole one of `size`, linear in between.
+fn doubled(coarse: &[f64], half: [u32; 3], size: [u32; 3]) -> Vec<f64> {
     let [x, y, _] = size.map(|n| n as usize);
     let [hx, hy, hz] = half.map(|n| n as usize);
     // a sample of the whole lattice lies a quarter of a coarse cell from its coarse one
@@ -176,11 +208,11 @@ fn doubled(coarse: &[f64], half: [u32; 3], size: [u32; 3]) -> Vec<f64> {
         for (k, wk) in k {
             for (j, wj) in j {
                 for (i, wi) in i {
-                    sum += wi * wj * wk * logs[i + hx * (j + hy * k)];
+                    sum += wi * wj * wk * coarse[i + hx * (j + hy * k)];
                 }
             }
         }
-        flushed(sum.exp())
+        sum
     };
     let count = size.iter().map(|&n| n as usize).product();
     (0..count).into_par_iter().with_min_len(SHARE).map(at).collect()
@@ -200,31 +232,52 @@ fn level(density: &[f64], volume: f64) -> f64 {
     0.5 * (last + *at)
 }
 
+/// A barycentre.
+struct Found {
+    density: Vec<f64>,
+    /// Width of the last Gaussian, in samples of the whole lattice.
+    width: f64,
+}
+
 /// Density of the barycentre of masses with their weights.
-fn barycentre(
-    size: [u32; 3],
-    masses: &[(&Mass, f64)],
-    job: &dyn Job,
-) -> Result<Vec<f64>, Cancelled> {
+fn barycentre(size: [u32; 3], masses: &[(&Mass, f64)], job: &dyn Job) -> Result<Found, Cancelled> {
     let halves: Vec<(Mass, f64)> = masses.iter().map(|(m, w)| (m.halved(size), *w)).collect();
     let coarse: Vec<(&Mass, f64)> = halves.iter().map(|(m, w)| (m, *w)).collect();
     let half = size.map(halved);
     let mut start = Barycentre::new(half, &coarse);
-    start.run(STAGES[0], job)?;
-    let finer = |x: &Vec<f64>| doubled(x, half, size);
-    let mut whole = Barycentre {
-        b: start.b.iter().map(finer).collect(),
-        d: finer(&start.d),
-        // in samples of the whole lattice
-        gamma: 4.0 * start.gamma,
-        ..Barycentre::new(size, masses)
-    };
-    drop(start);
-    whole.run(STAGES[1], job)?;
-    Ok(whole.m)
+    let mut width = FIRST[0];
+    while !start.run(width, ROUNDS[0], job)? && width < FIRST[1] {
+        start = Barycentre::new(half, &coarse);
+        width *= 2.0;
+    }
+    while start.width() > LAST {
+        let (wider, width) = (start.clone(), start.width() / 2.0);
+        if !start.run(width, if width > LAST { ROUNDS[0] } else { ROUNDS[1] }, job)? {
+            start = wider;
+            start.run(2.0 * width, ROUNDS[3], job)?;
+            break;
+        }
+    }
+    let finer = |x: &Vec<f64>| doubled_scalings(x, half, size);
+    let (blur, density) = (2.0 * start.width(), std::mem::take(&mut start.m));
+    if start.width() <= LAST {
+        let mut whole = Barycentre {
+            b: start.b.iter().map(finer).collect(),
+            d: finer(&start.d),
+            // in samples of the whole lattice
+            gamma: 4.0 * start.gamma,
+            ..Barycentre::new(size, masses)
+        };
+        drop(start);
+        if whole.run(LAST, ROUNDS[2], job)? {
+            return Ok(Found { density: whole.m, width: LAST });
+        }
+    }
+    Ok(Found { density: doubled(&density, half, size), width: blur })
 }
 
 /// The scaling iteration.
+#[derive(Clone)]
 struct Barycentre<'a> {
     size: [u32; 3],
     masses: &'a [(&'a Mass, f64)],
@@ -250,37 +303,60 @@ impl<'a> Barycentre<'a> {
         }
     }
 
-    fn run(&mut self, stages: &[(f64, u32)], job: &dyn Job) -> Result<(), Cancelled> {
-        for &(width, rounds) in stages {
-            let gamma = width * width;
-            let gauss = Gauss::new(self.size, gamma);
-            if self.gamma.is_finite() {
-                // a scaling is exp(potential / γ), and potentials carry over
-                let power = self.gamma / gamma;
-                let fields = self.b.iter_mut().chain([&mut self.d]);
-                fields.for_each(|x| {
-                    x.par_iter_mut().with_min_len(SHARE).for_each(|x| *x = scaled(*x, power))
-                });
-            }
-            self.gamma = gamma;
-            for round in 0..rounds {
-                job.done(f64::from(round) / f64::from(rounds));
-                let moved = self.round(&gauss, job)?;
-                if moved < STILL {
-                    break;
-                }
-            }
-        }
-        Ok(())
+    /// Width of the Gaussian that the scalings are for, samples.
+    fn width(&self) -> f64 {
+        self.gamma.sqrt()
     }
 
-    /// One round; the share of the mass that it moved.
-    fn round(&mut self, gauss: &Gauss, job: &dyn Job) -> Result<f64, Cancelled> {
-        let mut spread = Vec::with_capacity(self.masses.len());
+    /// A stage; whether its Gaussian reaches all of the mass.
+    fn run(&mut self, width: f64, rounds: u32, job: &dyn Job) -> Result<bool, Cancelled> {
+        let gamma = width * width;
+        let gauss = Gauss::new(self.size, gamma);
+        if self.gamma.is_finite() {
+            // a scaling is exp(potential / γ), and potentials carry over
+            let power = self.gamma / gamma;
+            let fields = self.b.iter_mut().chain([&mut self.d]);
+            fields.for_each(|x| {
+                x.par_iter_mut().with_min_len(SHARE).for_each(|x| *x = scaled(*x, power))
+            });
+        }
+        self.gamma = gamma;
+        let mut lost = 0.0;
+        for round in 0..rounds {
+            job.done(f64::from(round) / f64::from(rounds));
+            let moved;
+            (moved, lost) = self.round(&gauss, job)?;
+            if moved < STILL || lost >= 1.0 {
+                break;
+            }
+        }
+        Ok(lost < LOST && self.astray() < 1.0)
+    }
+
+    /// How far (samples) the centre of the mass is from the mean of the shapes' centres, where it
+    /// must be: farther than rounding only if the Gaussian keeps the mass too near to a shape.
+    fn astray(&self) -> f64 {
+        let [x, y, _] = self.size.map(|n| n as usize);
+        let centre = |density: &[f64]| {
+            let at =
+                |n: usize| DVec3::new((n % x) as f64, (n / x % y) as f64, (n / (x * y)) as f64);
+            let some = density.iter().enumerate().filter(|(_, m)| **m > 0.0);
+            some.map(|(n, &m)| at(n) * m).sum::<DVec3>()
+        };
+        let wanted: DVec3 = self.masses.iter().map(|(m, w)| centre(&m.density) * *w).sum();
+        centre(&self.m).distance(wanted)
+    }
+
+    /// One round; the share of the mass that it moved, and the share of a shape's mass from which
+    /// the Gaussian reaches nothing.
+    fn round(&mut self, gauss: &Gauss, job: &dyn Job) -> Result<(f64, f64), Cancelled> {
+        let (mut spread, mut lost) = (Vec::with_capacity(self.masses.len()), 0.0f64);
         for ((mass, _), b) in self.masses.iter().zip(&self.b) {
             let mut a = gauss.onto(b, &mass.rows, job)?;
             let ratio = |(a, &m): (&mut f64, &f64)| *a = divided(m, *a);
             a.par_iter_mut().with_min_len(SHARE).zip(&mass.density).for_each(ratio);
+            let left = a.iter().zip(&mass.density).filter(|(a, _)| **a <= 0.0);
+            lost = lost.max(left.map(|(_, m)| m).sum());
             spread.push(gauss.from(a, job)?);
         }
         let weights: Vec<f64> = self.masses.iter().map(|m| m.1).collect();
@@ -293,7 +369,10 @@ impl<'a> Barycentre<'a> {
             (0..self.d.len()).into_par_iter().with_min_len(SHARE).map(mean).collect();
         // one unit of mass, whatever the last width left: else stages begin with a long swing;
         // summed in one order, so that every number of threads gives the same
-        let total: f64 = m.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let total: f64 = m.iter().sum();
+        if total <= 0.0 {
+            return Ok((0.0, 1.0));
+        }
         m.par_iter_mut().with_min_len(SHARE).for_each(|m| *m = flushed(*m / total));
         for (b, s) in self.b.iter_mut().zip(&spread) {
             b.par_iter_mut()
@@ -308,7 +387,7 @@ impl<'a> Barycentre<'a> {
         self.d.par_iter_mut().with_min_len(SHARE).zip(&back).zip(&m).for_each(factor);
         let moved: f64 = m.iter().zip(&self.m).map(|(a, b)| (a - b).abs()).sum();
         self.m = m;
-        Ok(moved)
+        Ok((moved, lost))
     }
 }
 
