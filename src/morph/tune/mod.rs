@@ -16,6 +16,7 @@ use crate::job::{self, Cancelled, Job};
 use options::Kin;
 use rayon::prelude::*;
 use stage::Stage;
+use std::collections::BTreeMap;
 
 /// What hybrids are to look like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,7 +70,7 @@ pub struct Tuning {
 }
 
 /// Cells along the longest side of the coarse samples.
-const CELLS: f64 = 104.0;
+const CELLS: f64 = 92.0;
 /// Times at which a pair is tried: close enough that no part comes loose between them unseen.
 const TIMES: [f64; 7] = [0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9];
 /// Share of the largest piece from which on the rest is crumbs.
@@ -139,28 +140,38 @@ fn best_of(all: &[Vec<usize>], judge: &(impl Fn(&[usize]) -> Judged + Sync)) -> 
 /// From what is preferred, and from parts taken in turns, the best change of one kind after the other as
 /// long as it is better.
 fn descent(kins: &[Kin], judge: &(impl Fn(&[usize]) -> Judged + Sync)) -> Found {
-    let mut tried = 0;
-    let (mut found, mut least) = ((Vec::new(), Vec::new()), f64::INFINITY);
+    let mut known = BTreeMap::new();
+    let mut found: Option<(Vec<usize>, f64)> = None;
     for mut best in options::starts(kins) {
-        let (mut cost, mut outlook) = judge(&best)?;
-        tried += 1;
+        let mut cost = least(&mut known, vec![best.clone()], judge)?.map_or(f64::MAX, |(_, c)| c);
         for _ in 0..STEPS {
-            let near = options::neighbours(kins, &best);
-            let judged = near.par_iter().map(|c| judge(c)).collect::<Result<Vec<_>, _>>()?;
-            tried += near.len();
-            let better = judged.into_iter().zip(near).min_by(|a, b| a.0.0.total_cmp(&b.0.0));
-            match better {
-                Some(((less, seen), candidate)) if less < cost => {
-                    (cost, outlook, best) = (less, seen, candidate);
-                }
+            match least(&mut known, options::neighbours(kins, &best), judge)? {
+                Some((candidate, less)) if less < cost => (cost, best) = (less, candidate),
                 _ => break,
             }
         }
-        if cost < least {
-            (found, least) = ((best, outlook), cost);
+        if found.as_ref().is_none_or(|(_, least)| cost < *least) {
+            found = Some((best, cost));
         }
     }
-    Ok((found.0, found.1, tried))
+    let best = found.map_or_else(Vec::new, |(best, _)| best);
+    let tried = known.len();
+    let outlook = known.remove(&best).map_or_else(Vec::new, |(_, outlook)| outlook);
+    Ok((best, outlook, tried))
+}
+
+/// The best of some combinations, the first of equals; those not known yet are judged.
+fn least(
+    known: &mut BTreeMap<Vec<usize>, (f64, Vec<Outlook>)>,
+    all: Vec<Vec<usize>>,
+    judge: &(impl Fn(&[usize]) -> Judged + Sync),
+) -> Result<Option<(Vec<usize>, f64)>, Cancelled> {
+    let new: Vec<&Vec<usize>> = all.iter().filter(|c| !known.contains_key(*c)).collect();
+    let judged = new.par_iter().map(|c| Ok(((*c).clone(), judge(c)?)));
+    let judged = judged.collect::<Result<Vec<_>, Cancelled>>()?;
+    known.extend(judged);
+    let cost = |c: Vec<usize>| known.get(&c).map(|(cost, _)| (c, *cost));
+    Ok(all.into_iter().filter_map(cost).min_by(|a, b| a.1.total_cmp(&b.1)))
 }
 
 /// How far a hybrid is from one standing piece of the mean volume that does not jump, the mean over the

@@ -255,24 +255,28 @@ impl Stage {
     /// The field of a setting, as the hybrid mixes it.
     fn values(&self, set: &[&(Vec<f64>, Measured)]) -> Vec<f64> {
         let (k, n) = (self.hybrid.shapes.len(), self.hybrid.features.len());
-        let (mut g, mut lam) = (vec![0.0; k], vec![0.0; k]);
         let whole = matches!(self.hybrid.mix, Mix::Erode).then_some(Mix::Erode);
         let mix = whole.unwrap_or(Mix::Auto);
+        // a row a feature: its parameters, weights and thinning; blended in one go
+        let width = 4 + 2 * k;
+        let mut rows = Vec::with_capacity(n * width);
+        for (lam, m) in set {
+            let Local { reach, depth, apart, level } = m.local;
+            rows.extend([reach, depth, apart, level]);
+            rows.extend_from_slice(lam);
+            rows.extend_from_slice(&m.thin);
+        }
+        let mut sum = vec![0.0; width];
         let value = |r: usize| {
-            g.copy_from_slice(&self.g[r * k..(r + 1) * k]);
-            lam.fill(0.0);
-            let mut local = Local { reach: 0.0, depth: 0.0, apart: 0.0, level: 0.0 };
-            for (&w, (l, m)) in self.sharp[r * n..(r + 1) * n].iter().zip(set) {
-                local.reach += w * m.local.reach;
-                local.depth += w * m.local.depth;
-                local.apart += w * m.local.apart;
-                local.level += w * m.local.level;
-                for j in 0..k {
-                    lam[j] += w * l[j];
-                    g[j] += w * m.thin[j];
-                }
+            sum.fill(0.0);
+            for (&w, row) in self.sharp[r * n..(r + 1) * n].iter().zip(rows.chunks_exact(width)) {
+                sum.iter_mut().zip(row).for_each(|(s, x)| *s += w * x);
             }
-            mix.value(&g, &lam, &local)
+            let (local, shapes) = sum.split_at_mut(4);
+            let (lam, g) = shapes.split_at_mut(k);
+            g.iter_mut().zip(&self.g[r * k..(r + 1) * k]).for_each(|(g, own)| *g += own);
+            let [reach, depth, apart, level] = [local[0], local[1], local[2], local[3]];
+            mix.value(g, lam, &Local { reach, depth, apart, level })
         };
         (0..self.at.len()).map(value).collect()
     }
