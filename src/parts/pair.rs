@@ -91,8 +91,7 @@ fn mixed(chairs: &[&Chair]) -> bool {
     chairs.iter().any(|c| count(c) != count(&chairs[0]))
 }
 
-/// Elements of a part that some chairs have, at least half of more than two; where one has it not, the
-/// place it would be at.
+/// Elements of a part that some chairs have; where one has it not, the place it would be at.
 fn shared(
     chairs: &[&Chair],
     part: impl Fn(&Chair) -> Option<Result<Element, ElementError>>,
@@ -113,10 +112,6 @@ fn shared(
             })
         })
         .collect();
-    if chairs.len() > 2 && 2 * without.len() > chairs.len() {
-        // most have it not: with those that have it, it belongs to the part it is nearest to
-        return None;
-    }
     let note = if without.is_empty() { Note::Found } else { Note::Absent(without) };
     Some((elements, note))
 }

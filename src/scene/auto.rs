@@ -4,7 +4,7 @@ use super::live::Exact;
 use super::{SceneError, plan, suggest};
 use crate::job::Job;
 use crate::morph::{self, Choice, Course, Inner, Outlook, Plan, Style, Tuning};
-use crate::parts::Guess;
+use crate::parts::{Guess, Note, Paired};
 use crate::recipe::{
     FeatureMorph, InnerEntry, MethodEntry, MorphEntry, Recipe, Source, StyleEntry, TimeFn, Weights,
 };
@@ -87,7 +87,13 @@ pub(super) fn with_features(
     let entries = wanted.iter().map(|n| (n.clone(), recipe.shapes[n].clone())).collect();
     let looked =
         suggest::look(entries, beside, &recipe.grid, job).map_err(|e| relocate(e, source))?;
-    let suggestion = looked.suggestion;
+    let mut suggestion = looked.suggestion;
+    // what most of many have not belongs, with those that have it, to the part it is nearest to
+    let rare = |f: &Paired| match &f.note {
+        Note::Absent(without) => wanted.len() > 2 && 2 * without.len() > wanted.len(),
+        _ => false,
+    };
+    suggestion.features.retain(|f| !rare(f));
     let mut found: Vec<String> = suggestion.shapes.iter().map(words).collect();
     if suggestion.shapes.iter().any(|g| g.chair.is_none()) {
         found.push("auto: no parts of a chair to pair; space-time instead".to_owned());

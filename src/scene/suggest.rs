@@ -28,7 +28,7 @@ pub struct Looked {
     pub shells: Vec<TriMesh>,
     /// What was assumed and found on reading.
     pub notes: Vec<String>,
-    /// The fields again with what was found on making them, where the pose only turns and shifts.
+    /// The fields of meshes again with what was found on making them, where the pose only turns and shifts.
     pub(super) made: Vec<Option<Exact>>,
 }
 
@@ -86,8 +86,10 @@ pub fn look(
     for (((_, entry), guess), bounds) in stood.iter_mut().zip(&suggestion.shapes).zip(&boxes) {
         place(entry, &guess.pose, bounds);
     }
-    let sized = suggestion.shapes.iter().map(|g| g.pose.scale == 1.0);
-    let made = all.into_iter().zip(sized).map(|(made, same)| same.then_some(made)).collect();
+    // solids and surfaces are moved before their fields are made
+    let poses = suggestion.shapes.iter().map(|g| g.pose.scale == 1.0);
+    let still = stood.iter().zip(poses).map(|((_, e), same)| same && e.mesh.is_some());
+    let made = all.into_iter().zip(still).map(|(made, still)| still.then_some(made)).collect();
     Ok(Looked { shapes: stood, suggestion, fields, shells, notes, made })
 }
 

@@ -43,6 +43,8 @@ fn strays(case: &Case) -> Option<(usize, Vec<String>)> {
         .arg(env!("CARGO_BIN_EXE_fieldgraft"))
         .args(["convert", "--threads", "1", "--resolution", "8", &case.file, "out.stl"])
         .current_dir(&folder)
+        // else the system looks for its libraries where the compiler keeps some
+        .env_remove("LD_LIBRARY_PATH")
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
