@@ -4,7 +4,7 @@ use super::failure::{Failure, plain};
 use super::inputs::Reading;
 use super::watch::Watch;
 use clap::Args;
-use fieldgraft::check::{Health, Options, Shell, inspect, thinnest_wall};
+use fieldgraft::check::{Health, Options, Shell, inspect, thinnest_wall, without_copies};
 use fieldgraft::job::{self, Job};
 use fieldgraft::mesh::TriMesh;
 use fieldgraft::mesh::{Assume, Loaded, Unit, Up, read};
@@ -152,7 +152,7 @@ impl Check {
         if health.volume_mm3.is_none() {
             return Ok(());
         }
-        health.min_wall_mm = thinnest_wall(&Shell::new(mesh), job)?;
+        health.min_wall_mm = thinnest_wall(&Shell::new(without_copies(mesh)), job)?;
         if let (Some(wall), Some(nozzle)) = (health.min_wall_mm, self.nozzle)
             && wall < nozzle
         {

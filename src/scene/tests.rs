@@ -86,7 +86,10 @@ fn mean_volumes_are_those_of_the_features_unless_auto_chose_them() {
             on.a.box = { center = [0, 0, 5], size = [22, 22, 12] }\n\
             on.c.box = { center = [0, 0, 11], size = [12, 7, 22] }\n";
         let features: String = ["x", "y", "z"].map(|n| feature.replace("NAME", n)).concat();
-        let s = scene(&format!("{features}[morph]\nmethod = \"group\"\namong = [\"a\", \"c\"]\n{rest}")).unwrap();
+        let s = scene(&format!(
+            "{features}[morph]\nmethod = \"group\"\namong = [\"a\", \"c\"]\n{rest}"
+        ))
+        .unwrap();
         let v = [s.shapes[0].volume, s.shapes[1].volume];
         (s.variants[0].mean_volume(0.25) - v[0]) / (v[1] - v[0])
     };
