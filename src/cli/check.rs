@@ -146,10 +146,16 @@ impl Check {
     }
 }
 
+/// Where more triangles than this, and most of all, cut others, a mesh is a heap of surfaces: between
+/// which of them a wall is cannot be said, and every ray would meet all of them.
+const HEAP: u64 = 20_000;
+
 impl Check {
     /// Measures the walls of a closed mesh, and judges them by the nozzle.
     fn walls(&self, mesh: TriMesh, health: &mut Health, job: &dyn Job) -> Result<(), Failure> {
-        if health.volume_mm3.is_none() {
+        let cut = health.self_intersections.unwrap_or(0);
+        let heap = cut > HEAP && 2 * cut > health.triangles;
+        if health.volume_mm3.is_none() || heap {
             return Ok(());
         }
         health.min_wall_mm = thinnest_wall(&Shell::new(without_copies(mesh)), job)?;
