@@ -158,7 +158,11 @@ impl Source {
 
     /// Adds file and line to a problem.
     pub fn locate(&self, p: Problem) -> RecipeError {
-        RecipeError { file: self.file.clone(), line: self.line_of(&p.at), at: p.at, why: p.why }
+        // names of the text stand in it as they are, line breaks and all
+        let shown =
+            |c: char| if c.is_control() { c.escape_default().to_string() } else { c.into() };
+        let why = p.why.chars().map(shown).collect();
+        RecipeError { file: self.file.clone(), line: self.line_of(&p.at), at: p.at, why }
     }
 
     /// The line of a key, or of the nearest key above it that is there.

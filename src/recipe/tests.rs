@@ -194,3 +194,12 @@ fn cut_texts_are_errors_or_recipes() {
     let _ = parse(&format!("version = {}", "[".repeat(50_000)));
     let _ = parse(&format!("a{} = 1", ".a".repeat(50_000)));
 }
+
+/// A name with a line break in it, which JSON can have, found by the mutations.
+#[test]
+fn names_are_told_in_one_line() {
+    let text = r#"{"version": 1, "shapes": {"d\ning": {"mesh": "a.stl"}},
+        "features": [{"name": "leg", "on": {"dining": {"box": {"center": [0,0,0], "size": [1,1,1]}}}}]}"#;
+    let e = Recipe::parse(text, Path::new("r.json")).unwrap_err().to_string();
+    assert!(e.contains("did you mean `d\\ning`?") && !e.contains('\n'), "{e}");
+}

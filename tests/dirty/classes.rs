@@ -43,8 +43,10 @@ const CLASSES: &[Class] = &[
     ("caps", 0.02, caps),
     ("as a file of six digits", 0.02, six_digits),
     ("as a file of f32", 0.02, |m, _| moved(m, |p| p.as_vec3().as_dvec3())),
-    // f32 has sixteen numbers a mm there, and cells are half a mm
-    ("a million mm away", 0.06, |m, _| moved(m, |p| p + dvec3(1e6, -1e6, 1e6))),
+    // positions of results are f32, which have sixteen numbers a mm there, and cells are half a mm
+    ("a million mm away", 0.06, |m, _| moved(m, away)),
+    ("a million mm away in f32", 0.06, |m, _| moved(m, |p| away(p).as_vec3().as_dvec3())),
+    ("a million mm away in decimals, brought back", 0.02, |m, _| moved(m, away_and_back)),
     ("all at once", 0.06, all_at_once),
 ];
 
@@ -98,6 +100,16 @@ fn longest(m: &TriMesh) -> f64 {
 
 fn moved(m: &TriMesh, to: impl Fn(DVec3) -> DVec3) -> TriMesh {
     TriMesh { points: m.points.iter().map(|&p| to(p)).collect(), faces: m.faces.clone() }
+}
+
+fn away(p: DVec3) -> DVec3 {
+    p + dvec3(1e6, -1e6, 1e6)
+}
+
+/// As written in a file with all its digits, and stood on the floor.
+fn away_and_back(p: DVec3) -> DVec3 {
+    let text = away(p).to_array().map(|x| format!("{x}"));
+    DVec3::from(text.map(|x| x.parse().unwrap_or(f64::NAN))) - away(DVec3::ZERO)
 }
 
 fn flipped(m: &TriMesh) -> TriMesh {

@@ -174,10 +174,9 @@ fn results_do_not_depend_on_place_size_turn_or_order() {
             let mut r = crate::util::Random::new(3);
             let at: Vec<DVec3> =
                 (0..400).map(|_| b.centre() + r.vector() * (b.size() * 0.55)).collect();
-            // across a crack the surface is as uncertain as the crack is wide: a quarter of a voxel
+            // across a crack the surface is as uncertain as the crack is wide, here half a voxel
             let cracked = d.name.starts_with("cracked");
-            let moves = MOVES.iter().filter(|m| !cracked || m.0 != "in another order");
-            let moves = moves.filter(|m| !far || m.1 == 1.0 && m.0 != "shifted");
+            let moves = MOVES.iter().filter(|m| !far || m.1 == 1.0 && m.0 != "shifted");
             moves
                 .filter_map(|(name, scale, to, also)| {
                     let mut mesh = also(&d.mesh);
@@ -187,7 +186,9 @@ fn results_do_not_depend_on_place_size_turn_or_order() {
                     };
                     let off = |p: &DVec3| (g.value(to(*p)) / scale - f.value(*p)).abs() / voxel;
                     let worst = at.iter().map(off).fold(0.0, f64::max);
-                    let many = at.iter().filter(|p| off(p) > 1e-3).count();
+                    let open = cracked && *name == "in another order";
+                    let most = if open { 0.5 } else { 1e-3 };
+                    let many = at.iter().filter(|p| off(p) > most).count();
                     (many > 0).then(|| {
                         format!("{}, {name}: off by {worst:.4} voxels, {many} points", d.name)
                     })

@@ -89,8 +89,9 @@ fn obj() -> Vec<Case> {
     all.push(line("a number of 1 MB", &format!("v {} 0 0", "9".repeat(1 << 20))).harmless());
     all.push(line("a word of 1 MB", &format!("f 1 2 {}", "x".repeat(1 << 20))).says("line 9"));
     all.push(line("a face of 100 000 corners", &format!("f{}", ring(100_000))).harmless());
-    all.push(line("a spiral of 1200 corners", &spiral(1200)).harmless());
-    all.push(line("a spiral of 20 000 corners", &spiral(20_000)).harmless());
+    // a sheet encloses nothing in cells as large as its turns are apart
+    all.push(line("a spiral of 1200 corners", &spiral(1200)).ends([1, 0, 0]));
+    all.push(line("a spiral of 20 000 corners", &spiral(20_000)).ends([5, 0, 0]));
     all.push(line("a face too far in 100 000 corners", &format!("f{} 99", ring(100_000))));
     all.push(line("nothing but backslashes", &"\\\n".repeat(20_000)).harmless());
     all.push(line("a material from outside", "mtllib ../../../etc/passwd").harmless());
@@ -164,9 +165,10 @@ fn stl() -> Vec<Case> {
     ] {
         all.push(new(what, put(84 + 12, &x.to_le_bytes())).says("not finite"));
     }
-    for (what, x) in [("the largest f32", f32::MAX), ("the least f32", f32::from_bits(1))] {
-        all.push(new(what, put(84 + 12, &x.to_le_bytes())).harmless());
-    }
+    let far = put(84 + 12, &f32::MAX.to_le_bytes());
+    all.push(new("the largest f32", far).says("too fine for coordinates"));
+    let least = put(84 + 12, &f32::from_bits(1).to_le_bytes());
+    all.push(new("the least f32", least).harmless());
     let mut tiny = stl_bytes();
     tiny[84..].iter_mut().skip(3).step_by(4).for_each(|b| *b = 0);
     all.push(new("exponents taken away", tiny).harmless());
@@ -249,7 +251,7 @@ fn ply() -> Vec<Case> {
         swap("a list of lists", "uchar int", "list uchar").says("line 8"),
         swap("a property of nothing", "element vertex 4\n", "property float a\n").says("line 3"),
         swap("an unknown word", "end_header", "\x1b[2J").says("unknown header word"),
-        swap("codes for an element", "element face 4", "element \x1b[31m 9").harmless(),
+        swap("codes for an element", "element face 4", "element \x1b[31m 9").says("cut short"),
         swap("no end of the header", "end_header", "").says("line"),
         swap("a corner too far", "3 0 2 1", "3 0 2 4").says("point 4"),
         swap("corner -1", "3 0 2 1", "3 0 2 -1").says("-1"),
