@@ -21,7 +21,7 @@ pub struct Watch {
 }
 
 /// How long the work may take to notice an interruption before the process ends without it.
-const PATIENCE: Duration = Duration::from_millis(150);
+const PATIENCE: Duration = Duration::from_millis(60);
 
 /// Ticks of a bar; a stage's share is told in them.
 const TICKS: u64 = 1000;
