@@ -208,8 +208,7 @@ impl<'a> Work<'a> {
                 let [a, b, c] = self.corners(face);
                 let off = (b - a).cross(c - a).normalize_or_zero() * self.scale.offset;
                 let middle = (a + b + c) / 3.0;
-                let (behind, front) =
-                    (inside.open_number(middle - off), inside.open_number(middle + off));
+                let [behind, front, ..] = inside.open_numbers(&[middle - off, middle + off]);
                 let size = self.area(face);
                 all += size;
                 yes += if behind >= SOLID && front <= 1.0 - SOLID { size } else { 0.0 };

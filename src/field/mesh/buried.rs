@@ -4,7 +4,7 @@
 use super::cut::{Class, Cutter, Scale};
 use super::inside::Inside;
 use super::soup::{Sets, edges, sides};
-use crate::bvh::{Bvh, apart};
+use crate::bvh::{Bvh, Winding, apart};
 use crate::job::{Cancelled, Job, check};
 use crate::num::Aabb;
 use glam::DVec3;
@@ -16,6 +16,8 @@ const CHUNK: usize = 2048;
 /// whole, by their middles.
 const LIMIT: usize = 10_000_000;
 const LIMIT_EACH: usize = 500;
+/// Faces whose two sides are looked at together.
+const GROUP: usize = Winding::LANES / 2;
 /// Faces looked at to tell that a patch is of one class.
 const PROBES: usize = 8;
 /// Faces lower than this many slacks are no sheets but leftovers at seams.
@@ -152,13 +154,23 @@ impl Surface {
 impl Faces<'_> {
     /// What lies on both sides of a point of a face.
     fn class(&self, p: DVec3, normal: DVec3) -> Class {
-        let off = normal * self.scale.offset;
-        match (self.inside.at(p + off), self.inside.at(p - off)) {
-            (false, true) => Class::Surface,
-            (true, false) => Class::Reversed,
-            (true, true) => Class::Buried,
-            (false, false) => Class::Nothing,
-        }
+        self.classes(&[(p, normal)])[0]
+    }
+
+    /// What lies on both sides of up to four points of faces.
+    fn classes(&self, at: &[(DVec3, DVec3)]) -> [Class; GROUP] {
+        let off = |&(p, normal): &(DVec3, DVec3)| {
+            let off = normal * self.scale.offset;
+            [p + off, p - off]
+        };
+        let points: Vec<DVec3> = at.iter().flat_map(off).collect();
+        let inside = self.inside.which(&points);
+        std::array::from_fn(|i| match inside >> (2 * i) & 3 {
+            0b10 => Class::Surface,
+            0b01 => Class::Reversed,
+            0b11 => Class::Buried,
+            _ => Class::Nothing,
+        })
     }
 
     /// For each face the faces that touch or cross it other than where they are joined.
@@ -228,13 +240,13 @@ impl Faces<'_> {
         let free =
             |f: u32| contacts[f as usize].is_empty() && self.normals[f as usize] != DVec3::ZERO;
         let all: Vec<u32> = (0..self.faces.len() as u32).filter(|&f| free(f)).collect();
-        let alone = |f: u32| {
-            let (class, trust) = self.alone(f);
-            (vec![f], class, trust)
+        let alone = |faces: &[u32]| -> Vec<(Vec<u32>, Class, Trust)> {
+            let known = self.alone(faces);
+            faces.iter().zip(known).map(|(&f, (class, trust))| (vec![f], class, trust)).collect()
         };
         if !self.inside.is_closed() {
             // the winding number varies along an open shell
-            return Ok(all.into_par_iter().map(alone).collect());
+            return Ok(all.par_chunks(GROUP).flat_map_iter(alone).collect());
         }
         let sides = sides(self.faces);
         let mut sets = Sets::new(self.faces.len());
@@ -252,7 +264,10 @@ impl Faces<'_> {
             roots.chunk_by(|a, b| a.0 == b.0).map(|c| c.iter().map(|r| r.1).collect()).collect();
         let patch = |patch: Vec<u32>| match self.patch(&patch) {
             Some(class) => vec![(patch, class, Trust::Within(0.0))],
-            None => patch.into_iter().map(alone).map(|(f, c, _)| (f, c, Trust::Never)).collect(),
+            None => {
+                let known = patch.chunks(GROUP).flat_map(alone);
+                known.map(|(f, class, _)| (f, class, Trust::Never)).collect()
+            }
         };
         Ok(patches.into_par_iter().flat_map_iter(patch).collect())
     }
@@ -268,20 +283,33 @@ impl Faces<'_> {
         patch.iter().step_by(step).all(|&f| class(f) == first).then_some(first)
     }
 
-    /// The class of one face, surface if part of it seems to be, and its trust.
-    fn alone(&self, f: u32) -> (Class, Trust) {
-        let (t, n) = (&self.triangles[f as usize], self.normals[f as usize]);
-        let centre = middle(t);
-        let class = self.class(centre, n);
-        let radius = t.iter().fold(0.0, |r: f64, p| r.max(p.distance(centre)));
-        let off = n * self.scale.offset;
-        if self.inside.sharp(centre + off, radius + 2.0 * self.scale.offset) {
-            return (class, Trust::Within(0.0));
-        }
-        let toward = |p: DVec3| self.class(centre + (p - centre) * 0.75, n);
-        let is_surface = |c: Class| matches!(c, Class::Surface | Class::Reversed);
-        let seen = [class, toward(t[0]), toward(t[1]), toward(t[2])];
-        (seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class), Trust::Local)
+    /// The classes of up to four faces, surface where part of one seems to be, and their trust.
+    fn alone(&self, faces: &[u32]) -> Vec<(Class, Trust)> {
+        let offset = self.scale.offset;
+        let places: Vec<(DVec3, DVec3)> = faces
+            .iter()
+            .map(|&f| (middle(&self.triangles[f as usize]), self.normals[f as usize]))
+            .collect();
+        let ball = |(&f, &(centre, n)): (&u32, &(DVec3, DVec3))| {
+            let corners = self.triangles[f as usize].iter();
+            let radius = corners.fold(0.0, |r: f64, p| r.max(p.distance(centre)));
+            (centre + n * offset, radius + 2.0 * offset)
+        };
+        let balls: Vec<_> = faces.iter().zip(&places).map(ball).collect();
+        let (classes, sharp) = (self.classes(&places), self.inside.which_sharp(&balls));
+        let known = faces.iter().zip(places).zip(classes).enumerate();
+        known
+            .map(|(i, ((&f, (centre, n)), class))| {
+                if sharp >> i & 1 == 1 {
+                    return (class, Trust::Within(0.0));
+                }
+                let t = &self.triangles[f as usize];
+                let toward = t.map(|p| (centre + (p - centre) * 0.75, n));
+                let is_surface = |c: &Class| matches!(c, Class::Surface | Class::Reversed);
+                let [a, b, c, _] = self.classes(&toward);
+                ([class, a, b, c].into_iter().find(is_surface).unwrap_or(class), Trust::Local)
+            })
+            .collect()
     }
 
     /// Cuts the faces in contact and adds what is surface.

@@ -2,14 +2,14 @@
 
 use super::buried::{Surface, Trust};
 use super::inside::Inside;
-use crate::bvh::{Bvh, Hit, Nearest};
+use crate::bvh::{Bvh, Hit, Nearest, Winding};
 use crate::num::{Aabb, Interval};
 use glam::DVec3;
 
 /// Points whose signs are found together.
-const RUN: usize = 64;
+const RUN: usize = OCTET * OCTET;
 /// And where they are not the same all over.
-const OCTET: usize = 8;
+const OCTET: usize = Winding::LANES;
 
 /// The surface of a solid, and where it is inside.
 #[derive(Clone, Debug)]
@@ -55,8 +55,17 @@ impl Solid {
 
     /// Whether in that ball the sign changes nowhere but at the surface (and at the box).
     fn sharp(&self, centre: DVec3, radius: f64) -> bool {
-        let reach = radius + self.blur;
-        self.ghosts.nearest_within(centre, reach).is_none() && self.inside.sharp(centre, radius)
+        self.which_sharp(&[(centre, radius)]) != 0
+    }
+
+    /// For which of up to eight balls that is so, a bit for each.
+    fn which_sharp(&self, balls: &[(DVec3, f64)]) -> u8 {
+        let clear = |&(centre, radius): &(DVec3, f64)| {
+            self.ghosts.nearest_within(centre, radius + self.blur).is_none()
+        };
+        let clear = balls.iter().map(clear).enumerate();
+        let clear = clear.fold(0u8, |bits, (i, yes)| bits | u8::from(yes) << i);
+        if clear == 0 { 0 } else { clear & self.inside.which_sharp(balls) }
     }
 
     /// Whether the nearest face alone tells that `p` is inside.
@@ -107,22 +116,27 @@ impl Solid {
 
     /// Values of a run: together where the sign is sharp, else in smaller runs.
     fn signs(&self, at: &[DVec3], hits: &[Hit], known: &mut Vec<Known>, out: &mut [f64]) {
-        let run = Aabb::of(at.iter().copied());
-        let radius = run.radius();
-        if self.sharp(run.centre(), 2.0 * radius) {
-            self.spread(at, hits, radius, known, out);
-        } else if at.len() > OCTET {
-            for ((at, hits), out) in
-                at.chunks(OCTET).zip(hits.chunks(OCTET)).zip(out.chunks_mut(OCTET))
-            {
-                known.clear();
-                self.signs(at, hits, known, out);
-            }
-        } else {
+        let ball = |at: &[DVec3]| {
+            let run = Aabb::of(at.iter().copied());
+            (run.centre(), 2.0 * run.radius())
+        };
+        let whole = ball(at);
+        if self.which_sharp(&[whole]) != 0 {
+            return self.spread(at, hits, 0.5 * whole.1, known, out);
+        }
+        let balls: Vec<_> = at.chunks(OCTET).map(ball).collect();
+        let sharp = if balls.len() > 1 { self.which_sharp(&balls) } else { 0 };
+        let octets = at.chunks(OCTET).zip(hits.chunks(OCTET)).zip(out.chunks_mut(OCTET));
+        for (i, ((at, hits), out)) in octets.enumerate() {
             known.clear();
-            for ((&p, hit), f) in at.iter().zip(hits).zip(out) {
+            if sharp >> i & 1 == 1 {
+                self.spread(at, hits, 0.5 * balls[i].1, known, out);
+                continue;
+            }
+            let inside = self.inside.which(at);
+            for (i, (hit, f)) in hits.iter().zip(out).enumerate() {
                 let distance = hit.distance2.sqrt();
-                *f = signed(distance, distance > self.touch && self.inside.at(p));
+                *f = signed(distance, distance > self.touch && inside >> i & 1 == 1);
             }
         }
     }
@@ -158,15 +172,22 @@ impl Solid {
             }
         }
         let mut sides: Vec<((u32, bool), bool)> = vec![];
-        for (i, side) in open {
+        // by winding number: one that must be asked for brings the next ones with it
+        let (mut first, mut asked, mut answers) = (0, 0, 0u8);
+        for (n, &(i, side)) in open.iter().enumerate() {
             let (p, distance) = (at[i], out[i]);
             let same = || sides.iter().find(|s| Some(s.0) == side).map(|s| s.1);
             let reaches =
                 |k: &&Known| k.at.distance(p) < k.distance.max(distance) - self.blur - self.touch;
             let reached = || known.iter().rev().find(reaches).map(|k| k.inside);
-            let inside = same()
-                .or_else(reached)
-                .unwrap_or_else(|| distance > self.touch && self.inside.raw(p));
+            let inside = same().or_else(reached).unwrap_or_else(|| {
+                if n >= asked {
+                    let next: Vec<DVec3> = open[n..].iter().take(OCTET).map(|o| at[o.0]).collect();
+                    (asked, answers) = (n + next.len(), self.inside.which_raw(&next, u8::MAX));
+                    first = n;
+                }
+                distance > self.touch && answers >> (n - first) & 1 == 1
+            });
             out[i] = signed(distance, inside);
             known.push(Known { at: p, distance, inside });
             sides.extend(side.map(|side| (side, inside)));
