@@ -95,8 +95,7 @@ impl Inside {
             return which(&centres, |_, _| true);
         }
         let most = 0.5 - TREE_ERROR;
-        let change =
-            |&(centre, r): &(DVec3, f64)| self.rim.variation(centre, r, most / r) * r;
+        let change = |&(centre, r): &(DVec3, f64)| self.rim.variation(centre, r, most / r) * r;
         let changes: Vec<f64> = balls.iter().map(change).collect();
         if changes.iter().all(|&change| change >= most) {
             return 0;

@@ -36,6 +36,12 @@ struct Known {
     inside: bool,
 }
 
+/// The ball round some points in which their feet are looked for: twice as wide as their box.
+fn ball(at: &[DVec3]) -> (DVec3, f64) {
+    let run = Aabb::of(at.iter().copied());
+    (run.centre(), 2.0 * run.radius())
+}
+
 fn signed(distance: f64, inside: bool) -> f64 {
     if inside { -distance } else { distance }
 }
@@ -49,16 +55,12 @@ impl Solid {
     }
 
     /// The box outside which nothing is inside.
-    pub(super) fn bounds(&self) -> Aabb {
+    pub(super) fn support(&self) -> Aabb {
         *self.inside.bounds()
     }
 
-    /// Whether in that ball the sign changes nowhere but at the surface (and at the box).
-    fn sharp(&self, centre: DVec3, radius: f64) -> bool {
-        self.which_sharp(&[(centre, radius)]) != 0
-    }
-
-    /// For which of up to eight balls that is so, a bit for each.
+    /// In which of up to eight balls the sign changes nowhere but at the surface (and at the box), a
+    /// bit for each.
     fn which_sharp(&self, balls: &[(DVec3, f64)]) -> u8 {
         let clear = |&(centre, radius): &(DVec3, f64)| {
             self.ghosts.nearest_within(centre, radius + self.blur).is_none()
@@ -106,31 +108,34 @@ impl Solid {
         // with closed shells the way from one run to the next holds no surprise either
         let reach = self.inside.is_closed() && self.ghosts.is_empty();
         let mut known = Vec::with_capacity(RUN + 1);
-        for ((at, hits), out) in at.chunks(RUN).zip(hits.chunks(RUN)).zip(out.chunks_mut(RUN)) {
-            let last = known.pop().filter(|_| reach);
-            known.clear();
-            known.extend(last);
-            self.signs(at, hits, &mut known, out);
+        let eight = RUN * OCTET;
+        for ((at, hits), out) in at.chunks(eight).zip(hits.chunks(eight)).zip(out.chunks_mut(eight))
+        {
+            let balls: Vec<_> = at.chunks(RUN).map(ball).collect();
+            let sharp = self.which_sharp(&balls);
+            let runs = at.chunks(RUN).zip(hits.chunks(RUN)).zip(out.chunks_mut(RUN));
+            for (i, ((at, hits), out)) in runs.enumerate() {
+                let last = known.pop().filter(|_| reach);
+                known.clear();
+                known.extend(last);
+                if sharp >> i & 1 == 1 {
+                    self.spread(at, hits, balls[i], &mut known, out);
+                } else {
+                    self.octets(at, hits, &mut known, out);
+                }
+            }
         }
     }
 
-    /// Values of a run: together where the sign is sharp, else in smaller runs.
-    fn signs(&self, at: &[DVec3], hits: &[Hit], known: &mut Vec<Known>, out: &mut [f64]) {
-        let ball = |at: &[DVec3]| {
-            let run = Aabb::of(at.iter().copied());
-            (run.centre(), 2.0 * run.radius())
-        };
-        let whole = ball(at);
-        if self.which_sharp(&[whole]) != 0 {
-            return self.spread(at, hits, 0.5 * whole.1, known, out);
-        }
+    /// Values of a run whose sign is not sharp: by octets, together where those are.
+    fn octets(&self, at: &[DVec3], hits: &[Hit], known: &mut Vec<Known>, out: &mut [f64]) {
         let balls: Vec<_> = at.chunks(OCTET).map(ball).collect();
         let sharp = if balls.len() > 1 { self.which_sharp(&balls) } else { 0 };
         let octets = at.chunks(OCTET).zip(hits.chunks(OCTET)).zip(out.chunks_mut(OCTET));
         for (i, ((at, hits), out)) in octets.enumerate() {
             known.clear();
             if sharp >> i & 1 == 1 {
-                self.spread(at, hits, 0.5 * balls[i].1, known, out);
+                self.spread(at, hits, balls[i], known, out);
                 continue;
             }
             let inside = self.inside.which(at);
@@ -141,14 +146,14 @@ impl Solid {
         }
     }
 
-    /// Signs of a run in which only faces part inside from outside: by the nearest face; else
+    /// Signs of a run in a ball in which only faces part inside from outside: by the nearest face; else
     /// from a point already known, where the way from it is shorter than the distance of either
     /// to the surface; else by winding number.
     fn spread(
         &self,
         at: &[DVec3],
         hits: &[Hit],
-        radius: f64,
+        (centre, radius): (DVec3, f64),
         known: &mut Vec<Known>,
         out: &mut [f64],
     ) {
@@ -160,9 +165,10 @@ impl Solid {
                 continue;
             }
             // the way to the foot must lie in the ball that is known to be sharp
-            let near = (self.inside.is_closed() || distance <= radius)
-                .then(|| self.surface.nearest_of(p, hit))
-                .flatten();
+            let near = self
+                .surface
+                .nearest_of(p, hit)
+                .filter(|near| self.inside.is_closed() || near.point.distance(centre) <= radius);
             match near.and_then(|near| self.by_face(&near)) {
                 Some(inside) => {
                     *f = signed(distance, inside);
@@ -201,31 +207,70 @@ impl Solid {
         (local && near.inside > 0.0).then_some((near.face, near.height < 0.0))
     }
 
-    pub(super) fn bound(&self, b: &Aabb) -> Interval {
-        let (centre, radius) = (b.centre(), b.radius());
-        let Some(near) = self.surface.nearest(centre) else {
-            return Interval::ALL;
-        };
-        let d = near.distance;
-        let round_off = self.touch + 1e-12 * centre.abs().max_element();
-        if self.inside.bounds().meet(*b).is_empty() {
-            return Interval::new((d - radius).max(0.0), d + radius).widen(round_off);
+    pub(super) fn bounds(&self, boxes: &[Aabb], out: &mut [Interval]) {
+        for (boxes, out) in boxes.chunks(OCTET).zip(out.chunks_mut(OCTET)) {
+            self.bounds_of_eight(boxes, out);
         }
-        let range = if self.inside.is_closed() {
-            let inside = self.inside.bounds().contains(centre) && self.raw(centre, &near);
-            Interval::ball(signed(d, inside), radius + self.blur)
-        } else if d > radius + self.blur && self.sharp(centre, radius) {
-            let inside = self.inside.at(centre);
-            let cut = inside && !self.holds(b);
-            if cut {
-                Interval::ball(0.0, d + radius)
-            } else {
-                Interval::ball(signed(d, inside), radius)
+    }
+
+    fn bounds_of_eight(&self, boxes: &[Aabb], out: &mut [Interval]) {
+        let near: Vec<_> = boxes.iter().map(|b| self.surface.nearest(b.centre())).collect();
+        // boxes whose sign has to be known: for those of closed shells all, else where it is sharp
+        let whole = self.inside.is_closed();
+        let mut asked = vec![];
+        for (i, (b, near)) in boxes.iter().zip(&near).enumerate() {
+            let Some(near) = near else {
+                continue;
+            };
+            let there = !self.inside.bounds().meet(*b).is_empty();
+            let free = whole || near.distance > b.radius() + self.blur;
+            if there && free {
+                asked.push((i, b.centre(), b.radius()));
             }
-        } else {
-            Interval::ball(0.0, d + radius)
-        };
-        range.widen(round_off)
+        }
+        if !whole {
+            let balls: Vec<_> = asked.iter().map(|a| (a.1, a.2)).collect();
+            let mut sharp = self.which_sharp(&balls);
+            asked.retain(|_| (sharp & 1 == 1, sharp >>= 1).0);
+        }
+        let centres: Vec<DVec3> = asked.iter().map(|a| a.1).collect();
+        let sides = self.sides(&centres, asked.iter().map(|a| near[a.0].as_ref()));
+        for (i, (b, out)) in boxes.iter().zip(out).enumerate() {
+            let (centre, radius) = (b.centre(), b.radius());
+            *out = Interval::ALL;
+            let Some(near) = near[i].filter(|_| radius.is_finite()) else {
+                continue;
+            };
+            let d = near.distance;
+            let round_off = self.touch + 1e-12 * centre.abs().max_element();
+            let inside = asked.iter().position(|a| a.0 == i).map(|n| sides >> n & 1 == 1);
+            let range = match inside {
+                _ if self.inside.bounds().meet(*b).is_empty() => {
+                    Interval::new((d - radius).max(0.0), d + radius)
+                }
+                Some(inside) if whole => Interval::ball(signed(d, inside), radius + self.blur),
+                Some(inside) if !inside || self.holds(b) => {
+                    Interval::ball(signed(d, inside), radius)
+                }
+                _ => Interval::ball(0.0, d + radius),
+            };
+            *out = range.widen(round_off);
+        }
+    }
+
+    /// Which of up to eight points are inside, a bit for each.
+    fn sides<'a>(&self, at: &[DVec3], near: impl Iterator<Item = Option<&'a Nearest>>) -> u8 {
+        let (mut sides, mut rest) = (0, 0);
+        for (i, (&p, near)) in at.iter().zip(near).enumerate() {
+            let there = self.inside.bounds().contains(p);
+            let face = near.filter(|_| self.inside.is_closed()).and_then(|n| self.by_face(n));
+            match face {
+                _ if !there => {}
+                Some(inside) => sides |= u8::from(inside) << i,
+                None => rest |= 1 << i,
+            }
+        }
+        if rest == 0 { sides } else { sides | self.inside.which_raw(at, rest) }
     }
 
     fn holds(&self, b: &Aabb) -> bool {
