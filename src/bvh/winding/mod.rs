@@ -10,6 +10,7 @@ use crate::num::Aabb;
 use dipole::{Dipole, dipoles};
 use fearless_simd::{Level, dispatch};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// A box of triangles is seen as one dipole from farther than this many of its radii.
 const BETA: f64 = 2.0;
@@ -25,7 +26,7 @@ const EXACT: f64 = 2e-6;
 /// Up to eight points are asked for together; what a point gets does not depend on the others.
 #[derive(Clone, Debug)]
 pub struct Winding {
-    bvh: Bvh,
+    bvh: Arc<Bvh>,
     dipoles: Vec<Dipole>,
 }
 
@@ -35,7 +36,11 @@ impl Winding {
 
     /// The tree over oriented triangles with finite coordinates.
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
-        let bvh = Bvh::bare(triangles);
+        Self::over(Arc::new(Bvh::bare(triangles)))
+    }
+
+    /// Over the triangles of a tree that is there already.
+    pub fn over(bvh: Arc<Bvh>) -> Self {
         let dipoles = dipoles(&bvh);
         Self { bvh, dipoles }
     }

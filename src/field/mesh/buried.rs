@@ -6,12 +6,13 @@ use super::inside::Inside;
 use super::soup::{Sets, edges, sides};
 use crate::bvh::{Bvh, Winding, apart};
 use crate::job::{Cancelled, Job, check};
-use crate::num::Aabb;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Faces worked on between two looks at the job and the limits.
-const CHUNK: usize = 2048;
+/// Faces whose contacts are looked for together.
+const RUN: usize = 64;
+/// Runs, or faces, worked on between two looks at the job and the limits.
+const CHUNK: usize = 256;
 /// Work spent on cutting in all, and for each face; some seconds at most. Faces beyond are left
 /// whole, by their middles.
 const LIMIT: usize = 10_000_000;
@@ -37,6 +38,8 @@ pub(super) enum Trust {
 /// The surface, ready for measuring distances.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Surface {
+    /// Whether it is all faces as they were given, in their order.
+    pub whole: bool,
     pub triangles: Vec<[DVec3; 3]>,
     /// For each, when its sides tell inside from outside.
     pub trust: Vec<Trust>,
@@ -101,19 +104,19 @@ fn middle(t: &[DVec3; 3]) -> DVec3 {
 }
 
 impl Surface {
-    /// Sorts out the faces of the shells that `inside` is made of.
+    /// Sorts out the faces of the shells that `inside` is made of; `bvh` is the tree over them.
     pub(super) fn new(
-        points: &[DVec3],
+        triangles: Vec<[DVec3; 3]>,
         faces: &[[u32; 3]],
+        bvh: &Bvh,
         inside: &Inside,
         scale: Scale,
         job: &dyn Job,
     ) -> Result<Self, Cancelled> {
-        let triangles: Vec<_> = faces.iter().map(|f| f.map(|v| points[v as usize])).collect();
         let normal = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]).normalize_or_zero();
-        let normals = triangles.iter().map(normal).collect();
+        let normals = triangles.par_iter().map(normal).collect();
         let all = Faces { faces, triangles, normals, inside, scale };
-        let contacts = all.contacts(job)?;
+        let contacts = all.contacts(bvh, job)?;
         let mut surface = Self::default();
         for (group, class, trust) in all.untouched(&contacts, job)? {
             for f in group {
@@ -126,6 +129,7 @@ impl Surface {
             }
         }
         all.touched(&contacts, &mut surface, job)?;
+        surface.whole = surface.triangles == all.triangles;
         Ok(surface)
     }
 
@@ -173,61 +177,59 @@ impl Faces<'_> {
         })
     }
 
-    /// For each face the faces that touch or cross it other than where they are joined.
-    fn contacts(&self, job: &dyn Job) -> Result<Vec<Vec<u32>>, Cancelled> {
-        let bvh = Bvh::new(&self.triangles);
+    /// For each face the faces that touch or cross it other than where they are joined, in order.
+    fn contacts(&self, bvh: &Bvh, job: &dyn Job) -> Result<Vec<Vec<u32>>, Cancelled> {
         let n = self.triangles.len();
         let mut contacts = vec![vec![]; n];
         // a mesh that crosses itself everywhere is not worth more memory than this
         let mut left = 64 * n + 1_000_000;
-        for start in (0..n).step_by(CHUNK) {
+        for start in (0..n).step_by(CHUNK * RUN) {
             check(job)?;
             job.done(start as f64 / n as f64);
-            let found: Vec<Vec<u32>> = (start..n.min(start + CHUNK))
+            let end = n.min(start + CHUNK * RUN);
+            let found: Vec<Vec<[u32; 2]>> = (start..end)
                 .into_par_iter()
-                .map(|i| self.contacts_of(&bvh, i))
+                .step_by(RUN)
+                .map(|first| {
+                    let mut pairs = bvh.close_pairs(first..end.min(first + RUN), self.scale.slack);
+                    pairs.retain(|&pair| self.touch(pair));
+                    pairs
+                })
                 .collect();
-            for (i, found) in found.into_iter().enumerate() {
-                for j in found.into_iter().take(left) {
-                    left -= 1;
-                    contacts[start + i].push(j);
-                    contacts[j as usize].push((start + i) as u32);
-                }
+            for [i, j] in found.into_iter().flatten().take(left) {
+                left -= 1;
+                contacts[i as usize].push(j);
+                contacts[j as usize].push(i);
             }
         }
+        contacts.iter_mut().for_each(|c| c.sort_unstable());
         Ok(contacts)
     }
 
-    /// The later faces that face `i` is in contact with.
-    fn contacts_of(&self, bvh: &Bvh, i: usize) -> Vec<u32> {
-        let t = &self.triangles[i];
-        if self.normals[i] == DVec3::ZERO {
-            return vec![];
+    /// Whether two faces touch or cross other than where they are joined.
+    fn touch(&self, pair: [u32; 2]) -> bool {
+        let [i, j] = pair.map(|i| i as usize);
+        if self.normals[i] == DVec3::ZERO || self.normals[j] == DVec3::ZERO {
+            return false;
         }
         let slack = self.scale.slack;
-        let mut found = bvh.overlapping(&Aabb::of(*t), slack);
-        found.retain(|&j| {
-            let u = &self.triangles[j as usize];
-            if j as usize <= i || self.normals[j as usize] == DVec3::ZERO {
-                return false;
+        let (t, u) = (&self.triangles[i], &self.triangles[j]);
+        let (f, g) = (self.faces[i], self.faces[j]);
+        let common = [0, 1, 2].map(|k| g.iter().position(|&v| v == f[k]));
+        match common {
+            [None, None, None] => !apart(t, u, slack),
+            [Some(_), Some(_), Some(_)] => true,
+            [None, Some(_), Some(_)] => folded(t, 0, u, g, f, slack),
+            [Some(_), None, Some(_)] => folded(t, 1, u, g, f, slack),
+            [Some(_), Some(_), None] => folded(t, 2, u, g, f, slack),
+            // joined at a corner: one's opposite side must reach the other
+            [k, l, m] => {
+                let opposite = |t: &[DVec3; 3], k: usize| [t[(k + 1) % 3], t[(k + 2) % 3]];
+                let own = common.iter().position(Option::is_some).unwrap_or(0);
+                let other = k.or(l).or(m).unwrap_or(0);
+                !apart(&opposite(t, own), u, slack) || !apart(&opposite(u, other), t, slack)
             }
-            let (f, g) = (self.faces[i], self.faces[j as usize]);
-            let common: Vec<usize> = (0..3).filter(|&k| g.contains(&f[k])).collect();
-            match common[..] {
-                [] => !apart(t, u, slack),
-                // joined at a corner: one's opposite side must reach the other
-                [k] => {
-                    let l = (0..3).find(|&l| g[l] == f[k]).unwrap_or(0);
-                    let (s, r) =
-                        ([t[(k + 1) % 3], t[(k + 2) % 3]], [u[(l + 1) % 3], u[(l + 2) % 3]]);
-                    !apart(&s, u, slack) || !apart(&r, t, slack)
-                }
-                [k, l] => folded(t, 3 - k - l, u, g, f, slack),
-                _ => true,
-            }
-        });
-        found.sort_unstable();
-        found
+        }
     }
 
     /// Faces without contacts, by patches of one class each, with their trust.
@@ -325,7 +327,7 @@ impl Faces<'_> {
         let limit = LIMIT + LIMIT_EACH * self.faces.len();
         let mut spent = 0;
         let classify = |p: DVec3, n: DVec3| self.class(p, n);
-        for chunk in all.chunks(CHUNK / 8) {
+        for chunk in all.chunks(CHUNK) {
             check(job)?;
             let full = spent > limit;
             let pieces: Vec<_> = chunk

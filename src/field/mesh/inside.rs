@@ -1,8 +1,9 @@
 //! Inside or outside, by winding numbers.
 
-use crate::bvh::{Rim, Winding};
+use crate::bvh::{Bvh, Rim, Winding};
 use crate::num::Aabb;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// What the tree's winding number is off by at most where it is not refined, with room.
 const TREE_ERROR: f64 = 0.05;
@@ -26,7 +27,16 @@ impl Inside {
         open: &[[DVec3; 3]],
         rim: &[([DVec3; 2], u32)],
     ) -> Self {
-        let (closed, open) = (Winding::new(closed), Winding::new(open));
+        Self::of(Winding::new(closed), Winding::new(open), rim)
+    }
+
+    /// From the tree over all faces, which are either those of closed shells or those of open ones.
+    pub(super) fn over(all: &Arc<Bvh>, rim: &[([DVec3; 2], u32)], closed: bool) -> Self {
+        let (all, none) = (Winding::over(all.clone()), Winding::new(&[]));
+        if closed { Self::of(all, none, rim) } else { Self::of(none, all, rim) }
+    }
+
+    fn of(closed: Winding, open: Winding, rim: &[([DVec3; 2], u32)]) -> Self {
         let bounds = closed.bounds().hull(open.bounds());
         Self { closed, open, rim: Rim::new(rim), bounds }
     }

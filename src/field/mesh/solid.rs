@@ -5,6 +5,7 @@ use super::inside::Inside;
 use crate::bvh::{Bvh, Hit, Nearest, Winding};
 use crate::num::{Aabb, Interval};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Points whose signs are found together.
 const RUN: usize = OCTET * OCTET;
@@ -14,7 +15,7 @@ const OCTET: usize = Winding::LANES;
 /// The surface of a solid, and where it is inside.
 #[derive(Clone, Debug)]
 pub(super) struct Solid {
-    surface: Bvh,
+    surface: Arc<Bvh>,
     /// For each surface triangle, when its sides tell.
     trust: Vec<Trust>,
     /// What is not in `surface` although the sign may change there.
@@ -47,10 +48,12 @@ fn signed(distance: f64, inside: bool) -> f64 {
 }
 
 impl Solid {
-    pub(super) fn new(surface: Surface, inside: Inside, blur: f64) -> Self {
+    /// `all` is the tree over all faces, which serves where they are the surface as they are.
+    pub(super) fn new(surface: Surface, inside: Inside, blur: f64, all: Arc<Bvh>) -> Self {
         let touch = 1e-12 * inside.bounds().size().length();
-        let Surface { triangles, trust, ghosts, culled, .. } = surface;
-        let [surface, ghosts, culled] = [triangles, ghosts, culled].map(|t| Bvh::new(&t));
+        let Surface { whole, triangles, trust, ghosts, culled, .. } = surface;
+        let [ghosts, culled] = [ghosts, culled].map(|t| Bvh::new(&t));
+        let surface = if whole { all } else { Arc::new(Bvh::new(&triangles)) };
         Self { surface, trust, ghosts, culled, inside, touch, blur }
     }
 
