@@ -1,8 +1,9 @@
 //! Moments of oriented triangles, summed up the tree.
 
-use crate::bvh::Bvh;
+use crate::bvh::{Bvh, Node};
 use crate::num::Aabb;
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 /// Moments of the area vectors about the centre of a node, ready for evaluation.
 #[derive(Clone, Copy, Debug, Default)]
@@ -101,16 +102,17 @@ impl Moments {
 }
 
 pub(super) fn dipoles(bvh: &Bvh) -> Vec<Dipole> {
-    let mut moments = vec![Moments::at(DVec3::ZERO); bvh.nodes.len()];
-    for (i, node) in bvh.nodes.iter().enumerate().rev() {
+    let leaf = |node: &Node| {
+        let (first, count) = (node.first as usize, node.count as usize);
+        let triangles = &bvh.corners[first..first + count];
+        if count > 0 { of_triangles(triangles, &node.bounds) } else { Moments::at(DVec3::ZERO) }
+    };
+    let mut moments: Vec<Moments> = bvh.nodes.par_iter().map(leaf).collect();
+    for (i, node) in bvh.nodes.iter().enumerate().rev().filter(|(_, node)| node.count == 0) {
         let first = node.first as usize;
-        moments[i] = if node.count > 0 {
-            of_triangles(&bvh.corners[first..first + node.count as usize], &node.bounds)
-        } else {
-            of_children(&moments[first], &moments[first + 1], &node.bounds)
-        };
+        moments[i] = of_children(&moments[first], &moments[first + 1], &node.bounds);
     }
-    bvh.nodes.iter().zip(&moments).map(|(n, m)| m.dipole(&n.bounds)).collect()
+    bvh.nodes.par_iter().zip(&moments).map(|(n, m)| m.dipole(&n.bounds)).collect()
 }
 
 fn of_triangles(triangles: &[[DVec3; 3]], bounds: &Aabb) -> Moments {
