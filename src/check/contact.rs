@@ -35,7 +35,7 @@ pub(super) fn contacts(mesh: &Welded) -> Option<Vec<bool>> {
 }
 
 /// Faces over the same three vertices.
-fn piles(mesh: &Welded) -> Vec<Vec<u32>> {
+pub(super) fn piles(mesh: &Welded) -> Vec<Vec<u32>> {
     let mut keys: Vec<([u32; 3], u32)> = mesh
         .faces
         .iter()
@@ -57,29 +57,50 @@ fn meetings(triangles: &[Triangle]) -> Vec<bool> {
         return Vec::new();
     }
     let tree = build_bvh2(&boxes, BvhBuildParams::fast_build(), &mut Default::default());
+    // Who meets something has nothing more to find out, and leaves off: many copies of a mesh that
+    // differ by rounding have far more pairs than can be looked at.
+    let left_off: Vec<AtomicBool> = triangles.iter().map(|_| AtomicBool::new(false)).collect();
     // Neighbours in the tree are neighbours in space: a run of queries stays in the cache.
-    tree.primitive_indices.par_chunks(256).for_each(|run| {
-        for &i in run {
-            let (i, mine) = (i as usize, &boxes[i as usize]);
-            tree.aabb_traverse(*mine, |tree, node| {
-                let node = &tree.nodes[node as usize];
-                let first = node.first_index as usize;
-                for &j in &tree.primitive_indices[first..first + node.prim_count as usize] {
-                    let j = j as usize;
-                    // Once both are known to meet something the pair has nothing to add: a pile
-                    // of copies costs no predicates. The marks only ever rise, so their end
-                    // state does not depend on who comes first.
-                    let news = j > i && !(met[i].load(Relaxed) && met[j].load(Relaxed));
-                    if news && mine.intersect_aabb(&boxes[j]) && meet(&triangles[i], &triangles[j])
-                    {
-                        met[i].store(true, Relaxed);
-                        met[j].store(true, Relaxed);
-                    }
+    let each = |f: &(dyn Fn(usize) + Sync)| {
+        tree.primitive_indices
+            .par_chunks(256)
+            .for_each(|run| run.iter().for_each(|&i| f(i as usize)));
+    };
+    // The marks only ever rise, and each is looked at until it is risen or there is no pair left: their
+    // end state does not depend on who comes first.
+    let look = |i: usize, other: &dyn Fn(usize) -> bool| {
+        let mine = &boxes[i];
+        tree.aabb_traverse(*mine, |tree, node| {
+            let node = &tree.nodes[node as usize];
+            let first = node.first_index as usize;
+            for &j in &tree.primitive_indices[first..first + node.prim_count as usize] {
+                let j = j as usize;
+                let pair = other(j) && mine.intersect_aabb(&boxes[j]);
+                if pair && meet(&triangles[i], &triangles[j]) {
+                    met[i].store(true, Relaxed);
+                    met[j].store(true, Relaxed);
                 }
-                true
-            });
+                if met[i].load(Relaxed) {
+                    return false;
+                }
+            }
+            true
+        });
+    };
+    each(&|i| {
+        if !met[i].load(Relaxed) {
+            look(i, &|j| j > i);
         }
+        left_off[i].store(met[i].load(Relaxed), Relaxed);
     });
+    if left_off.iter().any(|l| l.load(Relaxed)) {
+        // pairs that the lesser of the two left off before
+        each(&|i| {
+            if !met[i].load(Relaxed) {
+                look(i, &|j| j < i && left_off[j].load(Relaxed));
+            }
+        });
+    }
     met.into_iter().map(AtomicBool::into_inner).collect()
 }
 

@@ -154,6 +154,20 @@ pub fn intersecting_faces(mesh: &TriMesh) -> Option<Vec<u32>> {
     Some((0..met.len() as u32).filter(|&i| met[i as usize]).collect())
 }
 
+/// A mesh without the faces that lie on the corners of an earlier one, either way round: pictures and
+/// walls are the same without them. Most meshes have none and are given back as they are.
+pub fn without_copies(mut mesh: TriMesh) -> TriMesh {
+    let welded = weld::weld(&mesh);
+    let piles = contact::piles(&welded);
+    if piles.len() < mesh.faces.len() {
+        let mut first = vec![false; mesh.faces.len()];
+        piles.iter().for_each(|pile| first[pile[0] as usize] = true);
+        let mut first = first.into_iter();
+        mesh.faces.retain(|_| first.next() == Some(true));
+    }
+    mesh
+}
+
 /// What is measured face by face.
 struct Sizes {
     area: f64,

@@ -284,3 +284,33 @@ fn json_has_the_agreed_names() {
         assert!(json.get(name).is_some(), "{name}");
     }
 }
+
+/// Copies of a ball that differ by rounding: every face meets another, and finding that out does not
+/// take looking at all pairs.
+#[test]
+fn many_copies_within_rounding_all_meet() {
+    let one = sphere(3);
+    let (mut points, mut faces) = (vec![], vec![]);
+    for copy in 0..150_u32 {
+        let from = points.len() as u32;
+        let off =
+            |i: usize, axis: u32| f64::from((i as u32 * 7 + copy * 13 + axis * 5) % 101) * 1e-13;
+        let moved = |(i, p): (usize, &DVec3)| *p + DVec3::new(off(i, 0), off(i, 1), off(i, 2));
+        points.extend(one.points.iter().enumerate().map(moved));
+        faces.extend(one.faces.iter().map(|f| f.map(|v| v + from)));
+    }
+    let mesh = TriMesh { points, faces };
+    let met = intersecting_faces(&mesh).unwrap();
+    assert!(met.len() * 100 > mesh.faces.len() * 99, "{} of {}", met.len(), mesh.faces.len());
+}
+
+#[test]
+fn copies_of_faces_are_dropped_either_way_round() {
+    let mut mesh = block([0.0; 3], [1.0, 2.0, 3.0]);
+    let few = mesh.faces.len();
+    assert_eq!(without_copies(mesh.clone()), mesh);
+    let turned: Vec<[u32; 3]> = mesh.faces.iter().map(|f| [f[1], f[0], f[2]]).collect();
+    let same = mesh.faces.clone();
+    mesh.faces.extend(turned.into_iter().chain(same));
+    assert_eq!(without_copies(mesh.clone()).faces, mesh.faces[..few]);
+}

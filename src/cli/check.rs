@@ -4,7 +4,7 @@ use super::failure::{Failure, plain};
 use super::inputs::Reading;
 use super::watch::Watch;
 use clap::Args;
-use fieldgraft::check::{Health, Options, Shell, inspect, thinnest_wall};
+use fieldgraft::check::{Health, Options, Shell, inspect, thinnest_wall, without_copies};
 use fieldgraft::job::{self, Job};
 use fieldgraft::mesh::TriMesh;
 use fieldgraft::mesh::{Assume, Loaded, Unit, Up, read};
@@ -146,13 +146,19 @@ impl Check {
     }
 }
 
+/// Where more triangles than this, and most of all, cut others, a mesh is a heap of surfaces: between
+/// which of them a wall is cannot be said, and every ray would meet all of them.
+const HEAP: u64 = 20_000;
+
 impl Check {
     /// Measures the walls of a closed mesh, and judges them by the nozzle.
     fn walls(&self, mesh: TriMesh, health: &mut Health, job: &dyn Job) -> Result<(), Failure> {
-        if health.volume_mm3.is_none() {
+        let cut = health.self_intersections.unwrap_or(0);
+        let heap = cut > HEAP && 2 * cut > health.triangles;
+        if health.volume_mm3.is_none() || heap {
             return Ok(());
         }
-        health.min_wall_mm = thinnest_wall(&Shell::new(mesh), job)?;
+        health.min_wall_mm = thinnest_wall(&Shell::new(without_copies(mesh)), job)?;
         if let (Some(wall), Some(nozzle)) = (health.min_wall_mm, self.nozzle)
             && wall < nozzle
         {

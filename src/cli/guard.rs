@@ -60,6 +60,10 @@ fn watched() -> Option<ExitCode> {
     worker.args(std::env::args_os().skip(1)).env(WATCHED, std::process::id().to_string());
     // a failed allocation would be followed by a trace of itself
     worker.env("RUST_BACKTRACE", "0");
+    // glibc lays 64 MB of address space aside for each thread's heap: here all have one heap
+    if std::env::var_os("MALLOC_ARENA_MAX").is_none() {
+        worker.env("MALLOC_ARENA_MAX", "1");
+    }
     let mut worker = worker.spawn().ok()?;
     loop {
         if let Some(status) = worker.try_wait().ok()? {

@@ -6,6 +6,7 @@ use super::failure::Failure;
 use super::inputs::{self, Is};
 use super::watch::Watch;
 use clap::Args;
+use fieldgraft::check::without_copies;
 use fieldgraft::job::{self, Job};
 use fieldgraft::mesh::TriMesh;
 use fieldgraft::num::Aabb;
@@ -116,7 +117,7 @@ impl Picture {
             }
             let loaded = load(file, &entry)?;
             watch.say(&assumed(file, &loaded));
-            meshes.push(Some(loaded.mesh));
+            meshes.push(Some(without_copies(loaded.mesh)));
         }
         watch.stage("picture");
         let image = match meshes.as_slice() {

@@ -37,6 +37,8 @@ impl Watch {
                     std::thread::sleep(Duration::from_millis(100));
                 }
                 orphan.store(true, Ordering::Relaxed);
+                std::thread::sleep(PATIENCE);
+                end(None);
             });
         }
         let bar = (std::io::stderr().is_terminal() && !common.quiet).then(|| {

@@ -1,15 +1,12 @@
 //! Where the keys of a JSON text stand. Only well-formed JSON is told about; what is not well
 //! formed is the parser's to refuse.
 
-use super::source::join;
-use std::ops::Range;
-
-/// Deepest nesting that is followed.
-const DEEPEST: usize = 64;
+use super::bulk::DEEPEST;
+use super::source::{LONGEST, Places, join};
 
 /// Every key and the bytes of its value.
-pub(super) fn places(text: &str) -> Vec<(String, Range<usize>)> {
-    let mut scan = Scan { text: text.as_bytes(), at: 0, places: Vec::new() };
+pub(super) fn places(text: &str) -> Places {
+    let mut scan = Scan { text: text.as_bytes(), at: 0, places: Places::default() };
     // bad grammar ends the scan early; what was found so far still helps
     let _ = scan.value(String::new(), 0);
     scan.places
@@ -18,7 +15,7 @@ pub(super) fn places(text: &str) -> Vec<(String, Range<usize>)> {
 struct Scan<'a> {
     text: &'a [u8],
     at: usize,
-    places: Vec<(String, Range<usize>)>,
+    places: Places,
 }
 
 impl Scan<'_> {
@@ -36,11 +33,9 @@ impl Scan<'_> {
     fn value(&mut self, key: String, depth: usize) -> Option<()> {
         self.space();
         let start = self.at;
-        let slot = self.places.len();
-        if !key.is_empty() {
-            self.places.push((key.clone(), start..self.text.len()));
-        }
-        if depth > DEEPEST {
+        let end = self.text.len();
+        let slot = if key.is_empty() { None } else { self.places.push(&key, start..end) };
+        if depth > DEEPEST || key.len() > LONGEST {
             return None;
         }
         match self.text.get(self.at)? {
@@ -49,7 +44,7 @@ impl Scan<'_> {
             b'"' => drop(self.string()?),
             _ => self.scalar(),
         }
-        if let Some(place) = self.places.get_mut(slot).filter(|_| !key.is_empty()) {
+        if let Some(place) = slot.and_then(|i| self.places.all.get_mut(i)) {
             place.1.end = self.at;
         }
         Some(())
@@ -62,7 +57,7 @@ impl Scan<'_> {
             let start = self.at;
             let name = self.string()?;
             let key = join(above, &name);
-            self.places.push((key.clone(), start..self.at));
+            self.places.push(&key, start..self.at);
             self.eat(b':')?;
             self.value(key, depth + 1)?;
             if self.eat(b',').is_none() {
@@ -113,7 +108,7 @@ mod tests {
     #[test]
     fn finds_keys_and_survives_nonsense() {
         let text = r#"{"a": {"b c": [1, {"d": "x\"y"}]}, "e": 2}"#;
-        let found = places(text);
+        let found = places(text).all;
         let at =
             |key: &str| found.iter().rev().find(|(k, _)| k == key).map(|(_, r)| &text[r.clone()]);
         assert_eq!(at("a.\"b c\"[1].d"), Some(r#""x\"y""#));

@@ -5,6 +5,7 @@
 //! plain data as typed; the `scene` makes objects of it.
 
 mod anchors;
+mod bulk;
 mod features;
 mod json;
 mod method;

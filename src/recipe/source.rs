@@ -1,5 +1,6 @@
 //! Where things stand in a recipe's text: keys to lines, and parse errors to keys.
 
+use super::bulk::{self, DEEPEST};
 use super::strict::Strict;
 use crate::num::near::did_you_mean;
 use serde::de::DeserializeOwned;
@@ -75,6 +76,7 @@ pub fn read_text(path: &Path) -> Result<String, String> {
 /// The `kind` that a TOML or JSON text begins with, if it has one: `solid`, or that of a surface file.
 /// Recipes have none.
 pub fn kind(text: &str, file: &Path) -> Option<String> {
+    bulk::check(text, is_json(file)).ok()?;
     if is_json(file) {
         let value: serde_json::Value = serde_json::from_str(text).ok()?;
         return value.get("kind")?.as_str().map(str::to_owned);
@@ -87,17 +89,39 @@ fn is_json(file: &Path) -> bool {
     file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
 }
 
+/// Keys, and the bytes of their names and values. Where a key is not kept, one above it tells the line.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Places {
+    pub all: Vec<(String, Range<usize>)>,
+    /// Of all the keys.
+    bytes: usize,
+}
+
+/// Longest key, with those above it, below which keys are looked for.
+pub(super) const LONGEST: usize = 1000;
+
+/// Most bytes of keys that are kept: a long key over many values would be kept with each of them.
+const KEYS: usize = 16 << 20;
+
+impl Places {
+    /// Keeps a place, if there is room. Its number among those kept.
+    pub fn push(&mut self, key: &str, at: Range<usize>) -> Option<usize> {
+        self.bytes = self.bytes.saturating_add(key.len());
+        let room = self.bytes <= KEYS;
+        if room {
+            self.all.push((key.to_owned(), at));
+        }
+        room.then(|| self.all.len() - 1)
+    }
+}
+
 /// A text, its name, and where its keys stand.
 #[derive(Clone, Debug)]
 pub struct Source {
     file: PathBuf,
     text: String,
-    /// Key and the bytes of its name or value.
-    places: Vec<(String, Range<usize>)>,
+    places: Places,
 }
-
-/// Deepest nesting that is read.
-const DEEPEST: usize = 64;
 
 impl Source {
     /// Reads a text into `T`; JSON when the name ends in `.json`, else TOML.
@@ -106,7 +130,9 @@ impl Source {
     /// Bad grammar, an unknown key (with the nearest known one), a wrong type.
     pub fn read<T: DeserializeOwned>(text: &str, file: &Path) -> Result<(T, Self), RecipeError> {
         let json = is_json(file);
-        let mut source = Self { file: file.to_owned(), text: text.to_owned(), places: Vec::new() };
+        let mut source =
+            Self { file: file.to_owned(), text: text.to_owned(), places: Places::default() };
+        bulk::check(text, json).map_err(|e| source.fail(Some(e.at..e.at), &e.why))?;
         if json { source.read_json() } else { source.read_toml() }.map(|t| (t, source))
     }
 
@@ -117,7 +143,7 @@ impl Source {
 
     /// A text of which neither keys nor lines are to be looked up, because a program wrote it.
     pub fn unplaced(text: String, file: &Path) -> Self {
-        Self { file: file.to_owned(), text, places: Vec::new() }
+        Self { file: file.to_owned(), text, places: Places::default() }
     }
 
     /// The name the text was given.
@@ -139,7 +165,7 @@ impl Source {
     pub fn line_of(&self, key: &str) -> Option<usize> {
         let mut key = key;
         while !key.is_empty() {
-            if let Some((_, at)) = self.places.iter().find(|(k, _)| k == key) {
+            if let Some((_, at)) = self.places.all.iter().find(|(k, _)| k == key) {
                 return Some(self.line_at(at.start));
             }
             key = key.rfind(['.', '[']).map_or("", |cut| &key[..cut]);
@@ -154,7 +180,7 @@ impl Source {
     /// The key with the smallest span that holds all of these bytes.
     fn key_at(&self, span: &Range<usize>) -> String {
         let holds = |r: &Range<usize>| r.contains(&span.start) && span.end <= r.end;
-        let holds = self.places.iter().filter(|(_, r)| holds(r));
+        let holds = self.places.all.iter().filter(|(_, r)| holds(r));
         // of equal spans the last is the deepest
         let key = holds.rev().min_by_key(|(_, r)| r.len()).map(|(k, _)| k.clone());
         key.unwrap_or_default()
@@ -194,14 +220,14 @@ impl Source {
         for (name, value) in table {
             let name_span = name.span();
             let key = join(above, name.get_ref());
-            self.places.push((key.clone(), name_span));
+            self.places.push(&key, name_span);
             self.index_value(key, value.span(), value.get_ref(), depth);
         }
     }
 
     fn index_value(&mut self, key: String, span: Range<usize>, value: &DeValue<'_>, depth: usize) {
-        self.places.push((key.clone(), span));
-        if depth > DEEPEST {
+        self.places.push(&key, span);
+        if depth > DEEPEST || key.len() > LONGEST {
             return;
         }
         match value {

@@ -71,6 +71,17 @@ impl Rows<'_> {
             _ => self.rest(),
         }
     }
+
+    /// Weights of the whole where `auto` chose those of the features. It does so part by part, such that
+    /// the whole keeps its shares: the frames have a row for all, or the parts times of their own beside
+    /// the features'. In a recipe made by hand a row `default` is only that of features without one.
+    pub fn chosen(&self) -> Option<Course> {
+        if let Some(row) = self.row(&self.entry.deform_weights, "default") {
+            return Some(Course::Fixed(row));
+        }
+        let timed = self.entry.parts.values().any(|p| p.t.is_some());
+        (timed && self.names.len() == 2).then(|| self.rest())
+    }
 }
 
 /// A pair's course with the feature's own time function.

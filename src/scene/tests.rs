@@ -78,6 +78,31 @@ fn mean_volumes_follow_time_and_weights() {
     assert_eq!(s.variants[0].mean_volume(0.5), c, "one feature's row is the whole's");
 }
 
+/// A row `default` by hand names the shape of most features, not the mean of the hybrid.
+#[test]
+fn mean_volumes_are_those_of_the_features_unless_auto_chose_them() {
+    let more = |rest: &str| {
+        let feature = "[[features]]\nname = \"NAME\"\n\
+            on.a.box = { center = [0, 0, 5], size = [22, 22, 12] }\n\
+            on.c.box = { center = [0, 0, 11], size = [12, 7, 22] }\n";
+        let features: String = ["x", "y", "z"].map(|n| feature.replace("NAME", n)).concat();
+        let s = scene(&format!(
+            "{features}[morph]\nmethod = \"group\"\namong = [\"a\", \"c\"]\n{rest}"
+        ))
+        .unwrap();
+        let v = [s.shapes[0].volume, s.shapes[1].volume];
+        (s.variants[0].mean_volume(0.25) - v[0]) / (v[1] - v[0])
+    };
+    let rows = "weights.x = { c = 1 }\nweights.default = { a = 1 }\n";
+    let near = |got: f64, share: f64| assert!((got - share).abs() < 1e-9, "{got} {share}");
+    near(more(rows), 0.25);
+    near(more(&format!("{rows}deform_weights.default = {{ a = 3, c = 2 }}")), 0.4);
+    // half of a pair's parts change early
+    let early = "parts.x.t = [[0, 0], [0.25, 1]]\n";
+    near(more(early), 0.25);
+    near(more(""), 0.25);
+}
+
 #[test]
 fn methods_are_chosen_by_what_is_there() {
     use crate::recipe::MethodEntry::{Graft, Group};

@@ -2,6 +2,7 @@
 
 use super::live::LiveShape;
 use super::moving::Moving;
+use super::rows::Rows;
 use super::{pair, plan};
 use crate::element::Element;
 use crate::field::Shared;
@@ -26,6 +27,8 @@ pub struct Variant {
     /// Shapes of the morph, in the order of the plan.
     shapes: Vec<Member>,
     way: Way,
+    /// How much of each shape there is, where that is not the mean over the features.
+    whole: Option<Course>,
     /// What its results need, mm.
     domain: Aabb,
     /// What was found on the way.
@@ -71,6 +74,8 @@ impl Variant {
         let live: Vec<&LiveShape> =
             names.iter().filter_map(|n| shapes.iter().find(|s| s.name == *n)).collect();
         let mut notes = vec![];
+        let words: Vec<&str> = names.iter().map(String::as_str).collect();
+        let whole = Rows { entry, names: &words }.chosen();
         let way = match (live.as_slice(), method.surface()) {
             ([shape], _) => alone(shape),
             ([a, b], Some(method)) => {
@@ -97,6 +102,7 @@ impl Variant {
             times,
             shapes: live.iter().map(member).collect(),
             way,
+            whole,
             notes,
         })
     }
@@ -149,9 +155,9 @@ impl Variant {
         self.domain
     }
 
-    /// The mean of the shapes' volumes at `t`, mm³, by the weights of the whole (without a row
-    /// `default`, the mean of the features' rows; for two shapes, the time). Not a number where a shape
-    /// has no field, and for a shape alone, which has nothing to be compared with.
+    /// The weighted mean of the shapes' volumes at `t`, mm³: with features the mean over them, by the
+    /// weights of the whole where `auto` chose the features'. Not a number where a shape has no field,
+    /// and for a shape alone, which has nothing to be compared with.
     pub fn mean_volume(&self, t: f64) -> f64 {
         let volumes: Vec<f64> = self.shapes.iter().map(|s| s.volume_at(t)).collect();
         let plan = match (&self.way, volumes.as_slice()) {
@@ -159,7 +165,14 @@ impl Variant {
             (Way::Pair(_), [a, b]) => return (1.0 - t) * a + t * b,
             _ => return f64::NAN,
         };
-        plan.course.at(t).iter().zip(&volumes).map(|(w, v)| w * v).sum()
+        let mean = |c: &Course| -> f64 { c.at(t).iter().zip(&volumes).map(|(w, v)| w * v).sum() };
+        match &self.whole {
+            Some(whole) => return mean(whole),
+            None if plan.features.is_empty() => return mean(&plan.course),
+            None => {}
+        }
+        let sum: f64 = plan.features.iter().map(|f| mean(&f.morph)).sum();
+        sum / plan.features.len() as f64
     }
 }
 

@@ -86,18 +86,18 @@ fn obj() -> Vec<Case> {
     }
     let ring = |n: usize| (1..=n).map(|i| format!(" {}", 1 + i % 4)).collect::<String>();
     all.push(line("not UTF-8 in a number", "").with(b"v \xff\xfe 0 0\n").says("line 10"));
-    all.push(line("a number of 1 MB", &format!("v {} 0 0", "9".repeat(1 << 20))).may_pass());
+    all.push(line("a number of 1 MB", &format!("v {} 0 0", "9".repeat(1 << 20))).harmless());
     all.push(line("a word of 1 MB", &format!("f 1 2 {}", "x".repeat(1 << 20))).says("line 9"));
-    all.push(line("a face of 100 000 corners", &format!("f{}", ring(100_000))).may_pass());
-    all.push(line("a spiral of 1200 corners", &spiral(1200)).may_pass());
-    all.push(line("a spiral of 20 000 corners", &spiral(20_000)).may_pass());
+    all.push(line("a face of 100 000 corners", &format!("f{}", ring(100_000))).harmless());
+    all.push(line("a spiral of 1200 corners", &spiral(1200)).harmless());
+    all.push(line("a spiral of 20 000 corners", &spiral(20_000)).harmless());
     all.push(line("a face too far in 100 000 corners", &format!("f{} 99", ring(100_000))));
-    all.push(line("nothing but backslashes", &"\\\n".repeat(20_000)).may_pass());
-    all.push(line("a material from outside", "mtllib ../../../etc/passwd").may_pass());
-    all.push(line("a material from a pipe", "mtllib pipe.bin\nusemtl a").may_pass());
-    all.push(line("a call of another file", "call ../trap.obj 1 2").may_pass());
-    all.push(line("codes in a name", "o \x1b]0;title\x07\ng \x1b[31m\nusemtl \u{9b}1m").may_pass());
-    all.push(line("a name that is not UTF-8", "").with(b"o caf\xe9 \xff\xfe\n").may_pass());
+    all.push(line("nothing but backslashes", &"\\\n".repeat(20_000)).harmless());
+    all.push(line("a material from outside", "mtllib ../../../etc/passwd").harmless());
+    all.push(line("a material from a pipe", "mtllib pipe.bin\nusemtl a").harmless());
+    all.push(line("a call of another file", "call ../trap.obj 1 2").harmless());
+    all.push(line("codes in a name", "o \x1b]0;title\x07\ng \x1b[31m\nusemtl \u{9b}1m").harmless());
+    all.push(line("a name that is not UTF-8", "").with(b"o caf\xe9 \xff\xfe\n").harmless());
     all
 }
 
@@ -150,8 +150,8 @@ fn stl() -> Vec<Case> {
         new("no triangles claimed", put(80, &0u32.to_le_bytes())).says("no triangles"),
         new("one triangle too many", put(80, &5u32.to_le_bytes())).says("5 triangles"),
         new("billions of triangles", put(80, &u32::MAX.to_le_bytes())).says("4294967295"),
-        new("fewer than there are", put(80, &3u32.to_le_bytes())).may_pass(),
-        new("codes in the header", put(0, b"\x1b[31mred\x1b]0;title\x07")).may_pass(),
+        new("fewer than there are", put(80, &3u32.to_le_bytes())).harmless(),
+        new("codes in the header", put(0, b"\x1b[31mred\x1b]0;title\x07")).harmless(),
     ];
     for n in [1, 40, 80, 83, 84, 85, 133, 134, 283] {
         all.push(new(&format!("cut at byte {n}"), whole[..n].into()));
@@ -165,11 +165,11 @@ fn stl() -> Vec<Case> {
         all.push(new(what, put(84 + 12, &x.to_le_bytes())).says("not finite"));
     }
     for (what, x) in [("the largest f32", f32::MAX), ("the least f32", f32::from_bits(1))] {
-        all.push(new(what, put(84 + 12, &x.to_le_bytes())).may_pass());
+        all.push(new(what, put(84 + 12, &x.to_le_bytes())).harmless());
     }
     let mut tiny = stl_bytes();
     tiny[84..].iter_mut().skip(3).step_by(4).for_each(|b| *b = 0);
-    all.push(new("exponents taken away", tiny).may_pass());
+    all.push(new("exponents taken away", tiny).harmless());
     all
 }
 
@@ -201,8 +201,8 @@ fn ascii_stl() -> Vec<Case> {
         swap("C1 codes for a word", "endfacet", "\u{9b}31m\u{202e}").says("no word"),
         swap("no end", "endsolid a\n", "").says("cut short"),
         swap("zeros within", "vertex 0 0 0", "vertex 0\0 0 0"),
-        swap("codes in the name", "solid a", "solid \x1b[2J\u{9b}31m").may_pass(),
-        swap("a facet of two corners", "vertex 0 0 0\n", "").may_pass(),
+        swap("codes in the name", "solid a", "solid \x1b[2J\u{9b}31m").harmless(),
+        swap("a facet of two corners", "vertex 0 0 0\n", "").harmless(),
     ];
     for n in [30, 60, 75, 110, 200, 350] {
         all.push(new(&format!("cut at byte {n}"), text.as_bytes()[..n].into()).says("line"));
@@ -249,7 +249,7 @@ fn ply() -> Vec<Case> {
         swap("a list of lists", "uchar int", "list uchar").says("line 8"),
         swap("a property of nothing", "element vertex 4\n", "property float a\n").says("line 3"),
         swap("an unknown word", "end_header", "\x1b[2J").says("unknown header word"),
-        swap("codes for an element", "element face 4", "element \x1b[31m 9").may_pass(),
+        swap("codes for an element", "element face 4", "element \x1b[31m 9").harmless(),
         swap("no end of the header", "end_header", "").says("line"),
         swap("a corner too far", "3 0 2 1", "3 0 2 4").says("point 4"),
         swap("corner -1", "3 0 2 1", "3 0 2 -1").says("-1"),
@@ -263,7 +263,7 @@ fn ply() -> Vec<Case> {
         swap("letters", "0 10 0", "0 \x1b[31m 0").says("not a number"),
         swap("strips", "element face 4", "element tristrips 4").says("tristrips"),
         swap("rows of no bytes", "element face", "element dust 4000000000\nelement face")
-            .may_pass(),
+            .harmless(),
         swap("two lists of points", "element face 4", "element vertex 1\nelement face 4"),
         swap(
             "100 000 properties",
@@ -275,7 +275,7 @@ fn ply() -> Vec<Case> {
             "element face",
             &format!("{}element face", "element e 0\n".repeat(100_000)),
         )
-        .may_pass(),
+        .harmless(),
     ];
     for n in [20, 60, 140, 170, 180, 190, 205] {
         all.push(new(&format!("cut at byte {n}"), PLY.as_bytes()[..n].into()));

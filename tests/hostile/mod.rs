@@ -36,14 +36,14 @@ pub struct Case {
     pub beside: Vec<(String, Vec<u8>)>,
     pub says: Vec<String>,
     pub given: As,
-    /// Whether it is odd rather than wrong: read, or refused, but nothing worse.
-    pub may_pass: bool,
+    /// The exit code of each command that it is given to.
+    pub ends: [i32; 3],
 }
 
 impl Case {
     pub fn new(given: As, file: &str, what: &str, bytes: impl Into<Vec<u8>>) -> Self {
         let (what, file, bytes) = (what.to_owned(), file.to_owned(), bytes.into());
-        Self { what, file, bytes, beside: vec![], says: vec![], given, may_pass: false }
+        Self { what, file, bytes, beside: vec![], says: vec![], given, ends: [3; 3] }
     }
 
     pub fn says(mut self, part: &str) -> Self {
@@ -51,8 +51,15 @@ impl Case {
         self
     }
 
-    pub fn may_pass(mut self) -> Self {
-        self.may_pass = true;
+    /// Odd rather than wrong: it is read.
+    pub fn harmless(self) -> Self {
+        self.ends([0; 3])
+    }
+
+    /// The exit codes, where they are not 3: of `convert`, `check` and `picture`, or of the command for
+    /// the text.
+    pub fn ends(mut self, codes: [i32; 3]) -> Self {
+        self.ends = codes;
         self
     }
 
@@ -123,17 +130,14 @@ pub fn listing(folder: &Path) -> Vec<(PathBuf, u64)> {
 }
 
 /// What is wrong with how the command took a bad file; nothing, if all is well.
-pub fn faults(did: &Did, shown_name: &str, says: &[String], may_pass: bool) -> Vec<String> {
+pub fn faults(did: &Did, shown_name: &str, says: &[String], ends: i32) -> Vec<String> {
     let mut wrong = vec![];
     let text = String::from_utf8_lossy(&did.stderr).into_owned();
     if did.hung {
         wrong.push("it hung".to_owned());
     }
-    // an odd file may give nothing, or more than is allowed
-    let passed = may_pass && matches!(did.code, Some(0 | 1 | 5));
-    // more than there is memory for is refused as over a limit
-    if !matches!(did.code, Some(3 | 5)) && !passed {
-        wrong.push(format!("exit {:?}, signal {:?}", did.code, did.signal));
+    if did.code != Some(ends) {
+        wrong.push(format!("exit {:?}, signal {:?}, not {ends}", did.code, did.signal));
     }
     for (stream, bytes) in [("stderr", &did.stderr), ("stdout", &did.stdout)] {
         let bad = |c: char| c.is_control() && c != '\n' || ('\u{202a}'..='\u{202e}').contains(&c);
@@ -141,7 +145,7 @@ pub fn faults(did: &Did, shown_name: &str, says: &[String], may_pass: bool) -> V
             wrong.push(format!("control codes on {stream}"));
         }
     }
-    if !passed {
+    if ends != 0 {
         let lines = text.lines().count();
         if !(1..=3).contains(&lines) || text.len() > 2000 {
             wrong.push(format!("{lines} lines, {} bytes on stderr", text.len()));
@@ -202,11 +206,11 @@ fn judge(cases: &[Case]) {
             let folder = place(case, &outer);
             let before = listing(&outer);
             let mut wrong = vec![];
-            for args in commands(case, nth) {
+            for (at, args) in commands(case, nth).into_iter().enumerate() {
                 let args: Vec<&std::ffi::OsStr> = args.iter().map(std::ffi::OsStr::new).collect();
                 let did = run(&args, &folder, root.path());
-                let mut found = faults(&did, &case.file, &case.says, case.may_pass);
-                if !case.may_pass && listing(&outer) != before {
+                let mut found = faults(&did, &case.file, &case.says, case.ends[at]);
+                if case.ends[at] != 0 && listing(&outer) != before {
                     found.push("something was written".to_owned());
                 }
                 wrong.extend(found.iter().map(|w| format!("{} ({}): {w}", case.what, case.file)));
