@@ -128,28 +128,30 @@ pub struct Swept {
 pub fn sweep(mut mesh: TriMesh, smallest_share: f64, options: &Options) -> Swept {
     let mut found = Found::of(&mesh);
     let mut crumbs = Crumbs::default();
-    if smallest_share > 0.0 {
-        let swept = parts::swept(&mesh, &found.welded, &found.anatomy, smallest_share);
-        if let Some((left, dropped)) = swept {
-            (mesh, crumbs) = (left, dropped);
-            found = Found::of(&mesh);
-        }
+    if smallest_share > 0.0
+        && let Some((left, dropped)) =
+            parts::swept(&mesh, &found.welded, &found.anatomy, smallest_share)
+    {
+        drop(found);
+        (mesh, crumbs) = (left, dropped);
+        found = Found::of(&mesh);
     }
     let pieces = parts::count(&found.anatomy.parts);
     let health = health(&mesh, &found, options);
+    drop(found);
     Swept { mesh, crumbs, health, pieces }
 }
 
 /// What the state of a mesh is told from.
-struct Found {
-    welded: Welded,
+struct Found<'a> {
+    welded: Welded<'a>,
     anatomy: Anatomy,
     sizes: Sizes,
     stance: Option<Stance>,
 }
 
-impl Found {
-    fn of(mesh: &TriMesh) -> Self {
+impl<'a> Found<'a> {
+    fn of(mesh: &'a TriMesh) -> Self {
         let welded = weld::weld(mesh);
         let stand = || if welded.astray == 0 { stance(mesh) } else { None };
         let (anatomy, (sizes, stance)) =

@@ -119,7 +119,7 @@ fn half_edges(mesh: &Welded) -> Buckets<HalfEdge> {
     let sides = |(i, &[a, b, c]): (u32, &[u32; 3])| {
         [(a, b, 0), (b, c, 1), (c, a, 2)].map(|(a, b, k)| (a.min(b), (a.max(b), 3 * i + k)))
     };
-    Buckets::new(mesh.points.len(), || (0..).zip(&mesh.faces).flat_map(sides))
+    Buckets::new(mesh.points.len(), || (0..).zip(mesh.faces.iter()).flat_map(sides))
 }
 
 fn count_fans(mesh: &Welded, corners: &mut Forest, t: &mut Topology) {
