@@ -103,9 +103,11 @@ impl Moments {
 
 pub(super) fn dipoles(bvh: &Bvh) -> Vec<Dipole> {
     let leaf = |node: &Node| {
+        if node.count == 0 {
+            return Moments::at(DVec3::ZERO);
+        }
         let (first, count) = (node.first as usize, node.count as usize);
-        let triangles = &bvh.corners[first..first + count];
-        if count > 0 { of_triangles(triangles, &node.bounds) } else { Moments::at(DVec3::ZERO) }
+        of_triangles(&bvh.corners[first..first + count], &node.bounds)
     };
     let mut moments: Vec<Moments> = bvh.nodes.par_iter().map(leaf).collect();
     for (i, node) in bvh.nodes.iter().enumerate().rev().filter(|(_, node)| node.count == 0) {
