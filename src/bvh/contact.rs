@@ -8,11 +8,15 @@ pub fn gap(corners: [DVec3; 3], p: DVec3) -> f64 {
 /// Whether two flat convex polygons (triangles, or segments of two points) are separated by more
 /// than `slack` mm. Errs on the side of `false`: what touches or overlaps is never called apart.
 ///
-/// Separating axes: both normals, the sides' normals within each plane, and all products of a side
-/// of one with a side of the other.
+/// Separating axes: the line from middle to middle, which parts most of what is apart; both normals,
+/// the sides' normals within each plane, and all products of a side of one with a side of the other.
 pub fn apart(a: &[DVec3], b: &[DVec3], slack: f64) -> bool {
-    let (na, nb) = (normal(a), normal(b));
     let gap = |axis: DVec3| gap_along(a, b, axis) > slack;
+    let middle = |p: &[DVec3]| p.iter().sum::<DVec3>() / p.len() as f64;
+    if gap(middle(b) - middle(a)) {
+        return true;
+    }
+    let (na, nb) = (normal(a), normal(b));
     if gap(na) || gap(nb) {
         return true;
     }

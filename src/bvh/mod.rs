@@ -26,6 +26,7 @@ pub use winding::Winding;
 use crate::num::Aabb;
 use glam::DVec3;
 use obvhs::{BvhBuildParams, bvh2::builder::build_bvh2_from_tris, triangle::Triangle};
+use rayon::prelude::*;
 use triangle::Tri;
 use wide::Wide;
 
@@ -56,7 +57,7 @@ impl Bvh {
     /// The tree over some triangles, all coordinates finite.
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
         let mut bvh = Self::bare(triangles);
-        bvh.tris = bvh.corners.iter().map(|&t| Tri::new(t)).collect();
+        bvh.tris = bvh.corners.par_iter().map(|&t| Tri::new(t)).collect();
         bvh.wide = Wide::new(&bvh.nodes, &bvh.tris);
         bvh
     }
@@ -64,8 +65,8 @@ impl Bvh {
     /// The tree without what distances need.
     fn bare(triangles: &[[DVec3; 3]]) -> Self {
         let bounds = Aabb::of(triangles.iter().flatten().copied());
-        let magnitude =
-            triangles.iter().flatten().fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
+        let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let magnitude = if triangles.is_empty() { 0.0 } else { largest };
         let mut bvh = Self {
             nodes: vec![],
             tris: vec![],

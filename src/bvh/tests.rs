@@ -118,13 +118,12 @@ fn moments_of_the_third_order_fall_with_the_fourth_power() {
     let half: Vec<_> =
         ball(24, 0.1).into_iter().filter(|t| t.iter().all(|p| p.z + 0.3 * p.x > 0.0)).collect();
     let winding = Winding::new(&half);
-    let d = winding.dipoles[0];
+    let centre = winding.bounds().centre();
     let error = |r: f64| {
         [dvec3(1.0, 2.0, 3.0), dvec3(-2.0, 1.0, 0.5), dvec3(0.1, -1.0, -1.0)]
             .map(|dir| {
-                let q = d.centre + dir.normalize() * r;
-                let far = d.solid_angle(d.centre - q, r * r) / (2.0 * TAU);
-                (far - winding.exact(q)).abs()
+                let q = centre + dir.normalize() * r;
+                (winding.roughly(&[q])[0] - winding.exact(q)).abs()
             })
             .into_iter()
             .fold(0.0, f64::max)
@@ -156,6 +155,14 @@ proptest! {
     fn winding_near_the_level_is_as_good_as_exact(at in points(60, 1.5), cut in -0.5..0.9) {
         let open: Vec<_> = ball(16, 0.1).into_iter().filter(|t| t[0].z < cut).collect();
         let winding = Winding::new(&open);
+        for at in at.chunks(Winding::LANES) {
+            let all = winding.numbers(at, [0.5; Winding::LANES]);
+            let alone = |&p: &DVec3| winding.number(p, 0.5);
+            prop_assert_eq!(&all[..at.len()], &at.iter().map(alone).collect::<Vec<_>>()[..]);
+            prop_assert!(all[at.len()..].iter().all(|&w| w == 0.0));
+            let rough = winding.roughly(at);
+            prop_assert!(at.iter().zip(rough).all(|(&p, w)| w == winding.roughly(&[p])[0]));
+        }
         for p in at {
             let (fast, exact) = (winding.number(p, 0.5), winding.exact(p));
             prop_assert!((fast - exact).abs() < 0.02);

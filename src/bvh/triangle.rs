@@ -18,6 +18,9 @@ pub(super) struct Tri([f64; NUMBERS]);
 /// Numbers of a triangle.
 const NUMBERS: usize = 19;
 
+/// Cosine below which two unit vectors count as square to each other.
+const SQUARE: f64 = 1e-9;
+
 /// Where a point lies relative to a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Local {
@@ -55,8 +58,10 @@ impl Tri {
         let u = (b - a).try_normalize().unwrap_or(DVec3::X);
         // the part of AC across AB keeps v and n square to u even on a sliver
         let across = (c - a) - u * (c - a).dot(u);
-        let v = across - u * across.dot(u);
-        let v = v.try_normalize().unwrap_or_else(|| u.any_orthonormal_vector());
+        let v = (across - u * across.dot(u)).try_normalize();
+        // of a triangle that is a segment there is only round-off left, which may run along AB
+        let v = v.filter(|v| v.dot(u).abs() < SQUARE);
+        let v = v.unwrap_or_else(|| u.any_orthonormal_vector());
         let ab = (b - a).dot(u);
         let (cx, cy) = ((c - a).dot(u), (c - a).dot(v));
         let n = u.cross(v);
@@ -258,6 +263,24 @@ mod tests {
             assert!((distance(corners, dvec3(2.0, 0.0, 1.0)) - 1.0).abs() < 1e-14);
         }
         assert!((distance([a, a, a], dvec3(1.0, 3.0, 4.0)) - 5.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_segment_in_any_direction_is_no_wider_than_a_line() {
+        let at = |k: u32| {
+            let x = f64::from(k) * 0.754_877_666;
+            dvec3(x.fract(), (x * 1.3247).fract(), (x * 1.7549).fract()) * 50.0 - 25.0
+        };
+        // most of all in those that run nearly along an axis: there round-off runs along it too
+        let flat = [1.0, 1e-2, 1e-4, 1e-8].map(|x: f64| dvec3(1.0, x, x * x));
+        for (k, flat) in (0..2000).flat_map(|k| flat.map(|flat| (k, flat))) {
+            let (a, b, p) = (at(k), at(k) + (at(k + 7) - at(k)) * flat * 0.3, at(3 * k + 1));
+            let along = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            let far = p.distance(a.lerp(b, along));
+            for corners in [[a, b, b], [b, a, a], [a, b, a], [a, b, a.lerp(b, 0.37)]] {
+                assert!((distance(corners, p) - far).abs() < 1e-9 * far, "{corners:?} {p}");
+            }
+        }
     }
 
     #[test]

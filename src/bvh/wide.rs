@@ -9,6 +9,7 @@ use super::triangle::{LANES, Lanes, Points, Tri};
 use crate::num::Aabb;
 use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Set in a child's number where it is a pack and not a node.
 const PACK: u32 = 1 << 31;
@@ -76,15 +77,26 @@ impl Wide {
         if !nodes.is_empty() {
             let nodes = halved(nodes);
             let spans = spans(&nodes);
-            wide.root = Some(wide.build(&nodes, &spans, tris));
+            let mut packs = vec![];
+            wide.root = Some(wide.build(&nodes, &spans, &mut packs));
+            let pack = |&[first, count]: &[u32; 2]| {
+                let lanes = Lanes::of(&tris[first as usize..(first + count) as usize]);
+                Pack { lanes, first, count }
+            };
+            wide.packs = packs.par_iter().map(pack).collect();
         }
         wide
     }
 
-    fn build(&mut self, nodes: &[Node], spans: &[[u32; 2]], tris: &[Tri]) -> u32 {
+    /// Lays out the nodes; `packs` gets first slot and number of triangles of each pack.
+    fn build(&mut self, nodes: &[Node], spans: &[[u32; 2]], packs: &mut Vec<[u32; 2]>) -> u32 {
         let small = |i: usize| spans[i][1] as usize <= LANES;
+        let mut pack = |span| {
+            packs.push(span);
+            PACK | (packs.len() as u32 - 1)
+        };
         if small(0) {
-            return self.pack(spans[0], tris);
+            return pack(spans[0]);
         }
         self.nodes.push(Eight::NONE);
         let mut open = vec![(0usize, 0usize)];
@@ -105,7 +117,7 @@ impl Wide {
             }
             for (lane, &c) in children.iter().enumerate() {
                 let child = if small(c) {
-                    self.pack(spans[c], tris)
+                    pack(spans[c])
                 } else {
                     open.push((self.nodes.len(), c));
                     self.nodes.push(Eight::NONE);
@@ -115,12 +127,6 @@ impl Wide {
             }
         }
         0
-    }
-
-    fn pack(&mut self, [first, count]: [u32; 2], tris: &[Tri]) -> u32 {
-        let all = &tris[first as usize..(first + count) as usize];
-        self.packs.push(Pack { lanes: Lanes::of(all), first, count });
-        PACK | (self.packs.len() as u32 - 1)
     }
 
     /// Least squared distance up to that of `known`, and its slot (`u32::MAX` for none). The result

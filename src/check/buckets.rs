@@ -8,7 +8,7 @@ pub(super) struct Buckets<T> {
     all: Vec<T>,
 }
 
-impl<T: Copy + Default + Ord> Buckets<T> {
+impl<T: Copy + Default + Ord + Send> Buckets<T> {
     /// Sorts the entries that `list` gives, each with its bucket below `count`; fewer than 2³² in all.
     pub fn new<I: Iterator<Item = (u32, T)>>(count: usize, list: impl Fn() -> I) -> Self {
         let mut ends = vec![0u32; count];
@@ -24,19 +24,33 @@ impl<T: Copy + Default + Ord> Buckets<T> {
             all[*place as usize] = entry;
             *place += 1;
         }
-        let mut buckets = Self { ends, all };
-        let mut start = 0;
-        for &end in &buckets.ends {
-            buckets.all[start as usize..end as usize].sort_unstable();
-            start = end;
-        }
-        buckets
+        sort(&ends, 0, &mut all);
+        Self { ends, all }
     }
 
     /// The entries of each bucket.
     pub fn iter(&self) -> impl Iterator<Item = &[T]> {
         let starts = std::iter::once(&0).chain(&self.ends);
         starts.zip(&self.ends).map(|(&from, &to)| &self.all[from as usize..to as usize])
+    }
+}
+
+/// Buckets sorted by one thread.
+const AT_ONCE: usize = 1 << 14;
+
+/// Sorts each bucket of `all`, which starts at entry `first`.
+fn sort<T: Ord + Send>(ends: &[u32], first: u32, all: &mut [T]) {
+    if ends.len() > AT_ONCE {
+        let half = ends.len() / 2;
+        let middle = ends[half - 1];
+        let (low, high) = all.split_at_mut((middle - first) as usize);
+        rayon::join(|| sort(&ends[..half], first, low), || sort(&ends[half..], middle, high));
+        return;
+    }
+    let mut start = first;
+    for &end in ends {
+        all[(start - first) as usize..(end - first) as usize].sort_unstable();
+        start = end;
     }
 }
 
@@ -50,6 +64,10 @@ mod tests {
         let sorted = Buckets::new(5, || list.into_iter());
         let got: Vec<&[u32]> = sorted.iter().collect();
         assert_eq!(got, [&[4, 9][..], &[], &[1, 5, 5], &[3], &[]]);
+        let many = Buckets::new(100_000, || (0..400_000u32).rev().map(|i| (i % 100_000, i)));
+        assert!(many.iter().enumerate().all(|(b, all)| {
+            all.iter().enumerate().all(|(n, &i)| i as usize == b + 100_000 * n) && all.len() == 4
+        }));
         assert_eq!(Buckets::<u32>::new(0, std::iter::empty).iter().count(), 0);
     }
 }

@@ -133,7 +133,7 @@ mod tests {
         ) {
             let points: Vec<DVec3> =
                 points.iter().map(|p| DVec3::from(p.map(f64::from)) * 0.1).collect();
-            let welded = Welded { points, faces, astray: 0 };
+            let welded = Welded { points: points.into(), faces: faces.into(), astray: 0 };
             let triangle = |f: &[u32; 3]| Triangle::new(f.map(|v| welded.points[v as usize]), *f);
             let all: Vec<Option<Triangle>> = welded.faces.iter().map(triangle).collect();
             let meets = |i: usize| {

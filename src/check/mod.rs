@@ -35,8 +35,8 @@ pub use wall::thinnest_wall;
 
 use crate::mesh::TriMesh;
 use crate::num::Aabb;
-use buckets::Buckets;
 use glam::DVec3;
+use parts::Anatomy;
 use rayon::prelude::*;
 use serde::Serialize;
 use topology::Topology;
@@ -107,13 +107,64 @@ pub struct Health {
 
 /// Examines a mesh. Any mesh: nothing is taken for granted.
 pub fn inspect(mesh: &TriMesh, options: &Options) -> Health {
-    let welded = weld::weld(mesh);
-    let topology = topology::topology(&welded);
-    let sizes = Sizes::of(&welded);
-    let parts = parts::parts_of(&welded, &topology.labels, topology.components);
-    let pieces = parts::count(&parts);
+    health(mesh, &Found::of(mesh), options)
+}
+
+/// A mesh without its crumbs, and what it looks like then.
+#[derive(Clone, Debug)]
+pub struct Swept {
+    /// What is left.
+    pub mesh: TriMesh,
+    /// What was dropped.
+    pub crumbs: Crumbs,
+    /// The state of what is left.
+    pub health: Health,
+    /// Its pieces.
+    pub pieces: Pieces,
+}
+
+/// [`drop_crumbs`] where the share is above zero, then [`inspect`] and [`solid_pieces`], in less time
+/// than one after the other.
+pub fn sweep(mut mesh: TriMesh, smallest_share: f64, options: &Options) -> Swept {
+    let mut found = Found::of(&mesh);
+    let mut crumbs = Crumbs::default();
+    if smallest_share > 0.0
+        && let Some((left, dropped)) =
+            parts::swept(&mesh, &found.welded, &found.anatomy, smallest_share)
+    {
+        drop(found);
+        (mesh, crumbs) = (left, dropped);
+        found = Found::of(&mesh);
+    }
+    let pieces = parts::count(&found.anatomy.parts);
+    let health = health(&mesh, &found, options);
+    drop(found);
+    Swept { mesh, crumbs, health, pieces }
+}
+
+/// What the state of a mesh is told from.
+struct Found<'a> {
+    welded: Welded<'a>,
+    anatomy: Anatomy,
+    sizes: Sizes,
+    stance: Option<Stance>,
+}
+
+impl<'a> Found<'a> {
+    fn of(mesh: &'a TriMesh) -> Self {
+        let welded = weld::weld(mesh);
+        let stand = || if welded.astray == 0 { stance(mesh) } else { None };
+        let (anatomy, (sizes, stance)) =
+            rayon::join(|| Anatomy::of(&welded), || (Sizes::of(&welded), stand()));
+        Self { welded, anatomy, sizes, stance }
+    }
+}
+
+fn health(mesh: &TriMesh, found: &Found, options: &Options) -> Health {
+    let Found { welded, anatomy: Anatomy { topology, parts }, sizes, stance } = found;
+    let pieces = parts::count(parts);
     let when_closed = |n: usize| (topology.closed && sizes.wild == 0).then_some(n as u64);
-    let met = if options.self_intersections { contact::contacts(&welded) } else { None };
+    let met = if options.self_intersections { contact::contacts(welded) } else { None };
     let mut health = Health {
         triangles: mesh.faces.len() as u64,
         vertices: topology.vertices as u64,
@@ -135,14 +186,14 @@ pub fn inspect(mesh: &TriMesh, options: &Options) -> Health {
         cavities: when_closed(pieces.cavities),
         open_edges: topology.open_edges as u64,
         degenerate_triangles: sizes.flat as u64,
-        duplicate_triangles: duplicates(&welded) as u64,
+        duplicate_triangles: topology.duplicates as u64,
         printable: false,
         reasons: Vec::new(),
     };
     if health.closed && health.floating_parts == Some(0) && welded.astray == 0 {
-        health.balanced = stance(mesh).map(|s| s.margin > 0.0);
+        health.balanced = stance.map(|s| s.margin > 0.0);
     }
-    health.reasons = reasons(&health, &topology, &sizes, welded.astray);
+    health.reasons = reasons(&health, topology, sizes, welded.astray);
     health.printable = health.reasons.is_empty();
     health
 }
@@ -209,16 +260,6 @@ fn area([a, b, c]: [DVec3; 3]) -> f64 {
 fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
     let longest = (b - a).length_squared().max((c - b).length_squared());
     2.0 * area([a, b, c]) <= 1e-30 + 1e-14 * longest.max((a - c).length_squared())
-}
-
-fn duplicates(mesh: &Welded) -> usize {
-    let sorted = |f: &[u32; 3]| {
-        let mut f = *f;
-        f.sort_unstable();
-        (f[0], [f[1], f[2]])
-    };
-    let all = Buckets::new(mesh.points.len(), || mesh.faces.iter().map(sorted));
-    all.iter().flat_map(|from| from.windows(2)).filter(|pair| pair[0] == pair[1]).count()
 }
 
 fn reasons(health: &Health, topology: &Topology, sizes: &Sizes, astray: usize) -> Vec<String> {

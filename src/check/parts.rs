@@ -40,12 +40,24 @@ pub struct Crumbs {
     pub share: f64,
 }
 
+/// How a mesh hangs together.
+pub(super) struct Anatomy {
+    pub topology: Topology,
+    pub parts: Vec<Part>,
+}
+
+impl Anatomy {
+    pub fn of(welded: &Welded) -> Self {
+        let topology = topology(welded);
+        let parts = parts_of(welded, &topology.labels, topology.components);
+        Self { topology, parts }
+    }
+}
+
 /// The component of each face, numbered by first face, and the components.
 pub fn parts(mesh: &TriMesh) -> (Vec<u32>, Vec<Part>) {
-    let welded = weld(mesh);
-    let topology = topology(&welded);
-    let parts = parts_of(&welded, &topology.labels, topology.components);
-    (topology.labels, parts)
+    let found = Anatomy::of(&weld(mesh));
+    (found.topology.labels, found.parts)
 }
 
 /// Counts solids and cavities; meaningful for closed meshes.
@@ -58,9 +70,23 @@ pub fn solid_pieces(mesh: &TriMesh) -> Pieces {
 /// a cavity that lies in no solid. Meaningful for closed meshes.
 pub fn drop_crumbs(mesh: &TriMesh, smallest_share: f64) -> (TriMesh, Crumbs) {
     let welded = weld(mesh);
-    let Topology { labels, components, .. } = topology(&welded);
-    let parts = parts_of(&welded, &labels, components);
-    let home = homes(&welded, &labels, &parts);
+    let found = Anatomy::of(&welded);
+    swept(mesh, &welded, &found, smallest_share)
+        .unwrap_or_else(|| (mesh.clone(), Crumbs::default()))
+}
+
+/// [`drop_crumbs`] where there are any.
+pub(super) fn swept(
+    mesh: &TriMesh,
+    welded: &Welded,
+    found: &Anatomy,
+    smallest: f64,
+) -> Option<(TriMesh, Crumbs)> {
+    let Anatomy { topology, parts } = found;
+    if parts.len() < 2 {
+        return None;
+    }
+    let home = homes(welded, &topology.labels, parts);
     let mut volumes = vec![0.0; parts.len()];
     for (part, home) in parts.iter().zip(&home) {
         if let Some(home) = home {
@@ -70,19 +96,19 @@ pub fn drop_crumbs(mesh: &TriMesh, smallest_share: f64) -> (TriMesh, Crumbs) {
     let whole: f64 = volumes.iter().sum();
     let largest = (0..parts.len()).max_by(|&i, &j| volumes[i].total_cmp(&volumes[j]));
     let crumb: Vec<bool> = (0..parts.len())
-        .map(|i| home[i] == Some(i) && Some(i) != largest && volumes[i] < smallest_share * whole)
+        .map(|i| home[i] == Some(i) && Some(i) != largest && volumes[i] < smallest * whole)
         .collect();
-    let mut swept = Crumbs::default();
+    let mut crumbs = Crumbs::default();
     for i in (0..parts.len()).filter(|&i| crumb[i]) {
-        swept.count += 1;
-        swept.volume_mm3 += volumes[i];
+        crumbs.count += 1;
+        crumbs.volume_mm3 += volumes[i];
     }
-    if swept.count == 0 {
-        return (mesh.clone(), swept);
+    if crumbs.count == 0 {
+        return None;
     }
-    swept.share = swept.volume_mm3 / whole;
-    let stays = |i: usize| !home[labels[i] as usize].is_some_and(|home| crumb[home]);
-    (subset(mesh, stays), swept)
+    crumbs.share = crumbs.volume_mm3 / whole;
+    let stays = |i: usize| !home[topology.labels[i] as usize].is_some_and(|home| crumb[home]);
+    Some((subset(mesh, stays), crumbs))
 }
 
 pub(super) fn count(parts: &[Part]) -> Pieces {
@@ -92,7 +118,7 @@ pub(super) fn count(parts: &[Part]) -> Pieces {
     }
 }
 
-pub(super) fn parts_of(mesh: &Welded, labels: &[u32], components: usize) -> Vec<Part> {
+fn parts_of(mesh: &Welded, labels: &[u32], components: usize) -> Vec<Part> {
     let origin = Aabb::of(mesh.points.iter().copied()).centre();
     let none = Part { faces: 0, volume_mm3: 0.0, bounds: Aabb::EMPTY };
     let mut parts = vec![none; components];

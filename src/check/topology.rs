@@ -23,6 +23,8 @@ pub(super) struct Topology {
     pub split_vertices: usize,
     /// Vertices that a triangle uses.
     pub vertices: usize,
+    /// Triangles on the same three vertices as another, all but one of them.
+    pub duplicates: usize,
     /// Component of each face, numbered by first face.
     pub labels: Vec<u32>,
     /// Number of components: faces joined through edges.
@@ -57,6 +59,7 @@ pub(super) fn topology(mesh: &Welded) -> Topology {
         closed: !mesh.faces.is_empty(),
         split_vertices: 0,
         vertices: 0,
+        duplicates: 0,
         labels: Vec::new(),
         components: 0,
     };
@@ -70,6 +73,9 @@ pub(super) fn topology(mesh: &Welded) -> Topology {
         t.opposed_edges += usize::from(edge.len() == 2 && sum != 0);
         t.manifold_edges &= edge.len() == 2;
         t.closed &= sum == 0;
+        if edge.len() > 1 {
+            t.duplicates += duplicates(edge, start);
+        }
         t.oriented &= sum.abs() <= 1 && (edge.len() % 2 == 1 || sum == 0);
         for pair in edge.windows(2) {
             let (a, b) = (pair[0].1, pair[1].1);
@@ -87,6 +93,23 @@ pub(super) fn topology(mesh: &Welded) -> Topology {
     t
 }
 
+/// Of the faces along an edge of which it joins the two lowest vertices: how many have the same third
+/// one as another.
+fn duplicates(edge: &[HalfEdge], start: impl Fn(u32) -> u32) -> usize {
+    let third = |h: &HalfEdge| (start(following(following(h.1))), h.1 / 3);
+    if let [a, b] = edge
+        && third(a).0 != third(b).0
+    {
+        return 0;
+    }
+    let high = edge[0].0;
+    let mut thirds: Vec<_> = edge.iter().map(third).filter(|t| t.0 >= high).collect();
+    thirds.sort_unstable();
+    // a face with a vertex twice runs along the edge twice
+    thirds.dedup();
+    thirds.windows(2).filter(|pair| pair[0].0 == pair[1].0).count()
+}
+
 /// The next corner of the same face.
 fn following(corner: u32) -> u32 {
     if corner % 3 == 2 { corner - 2 } else { corner + 1 }
@@ -96,7 +119,7 @@ fn half_edges(mesh: &Welded) -> Buckets<HalfEdge> {
     let sides = |(i, &[a, b, c]): (u32, &[u32; 3])| {
         [(a, b, 0), (b, c, 1), (c, a, 2)].map(|(a, b, k)| (a.min(b), (a.max(b), 3 * i + k)))
     };
-    Buckets::new(mesh.points.len(), || (0..).zip(&mesh.faces).flat_map(sides))
+    Buckets::new(mesh.points.len(), || (0..).zip(mesh.faces.iter()).flat_map(sides))
 }
 
 fn count_fans(mesh: &Welded, corners: &mut Forest, t: &mut Topology) {

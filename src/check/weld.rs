@@ -3,19 +3,20 @@
 use crate::mesh::{TriMesh, twins};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
-/// A mesh whose points are distinct and all used.
-pub(super) struct Welded {
-    pub points: Vec<DVec3>,
+/// A mesh whose points are distinct and all used: often the very mesh it was made from.
+pub(super) struct Welded<'a> {
+    pub points: Cow<'a, [DVec3]>,
     /// As many as the mesh has, in its order.
-    pub faces: Vec<[u32; 3]>,
+    pub faces: Cow<'a, [[u32; 3]]>,
     /// Faces that named a point the mesh does not have; they stand as `[0, 0, 0]`.
     pub astray: usize,
 }
 
 /// Joins points with the same coordinates (-0 counts as 0) and leaves out unused ones; the
 /// points that stay keep their order.
-pub(super) fn weld(mesh: &TriMesh) -> Welded {
+pub(super) fn weld(mesh: &TriMesh) -> Welded<'_> {
     let total = mesh.points.len();
     let missing = |f: &[u32; 3]| f.iter().any(|&v| v as usize >= total);
     let mut used = vec![false; total];
@@ -28,6 +29,10 @@ pub(super) fn weld(mesh: &TriMesh) -> Welded {
         }
     }
     let first = twins(&mesh.points, &used);
+    let alone = |(v, &first): (usize, &u32)| used[v] && first as usize == v;
+    if astray == 0 && first.par_iter().enumerate().all(alone) {
+        return Welded { points: Cow::from(&mesh.points), faces: Cow::from(&mesh.faces), astray };
+    }
     let mut points = Vec::new();
     let mut name = vec![0_u32; total];
     for v in 0..total {
@@ -45,7 +50,8 @@ pub(super) fn weld(mesh: &TriMesh) -> Welded {
     let rename = |f: &[u32; 3]| {
         if missing(f) { [0; 3] } else { f.map(|v| name[v as usize]) }
     };
-    Welded { points, faces: mesh.faces.par_iter().map(rename).collect(), astray }
+    let faces: Vec<_> = mesh.faces.par_iter().map(rename).collect();
+    Welded { points: points.into(), faces: faces.into(), astray }
 }
 
 #[cfg(test)]
@@ -60,8 +66,11 @@ mod tests {
             faces: vec![[1, 2, 3], [4, 3, 5], [0, 1, 77]],
         };
         let w = weld(&mesh);
-        assert_eq!(w.points, [0.0, 1.0, 2.0, 3.0].map(p));
-        assert_eq!(w.faces, [[0, 1, 2], [0, 2, 3], [0, 0, 0]]);
+        assert_eq!(w.points[..], [0.0, 1.0, 2.0, 3.0].map(p));
+        assert_eq!(w.faces[..], [[0, 1, 2], [0, 2, 3], [0, 0, 0]]);
         assert_eq!(w.astray, 1);
+        let clean = TriMesh { points: w.points.to_vec(), faces: w.faces[..2].to_vec() };
+        let w = weld(&clean);
+        assert_eq!((&w.points[..], &w.faces[..]), (&clean.points[..], &clean.faces[..]));
     }
 }

@@ -25,6 +25,14 @@ pub trait Field: Send + Sync {
     /// what the bound says is empty. What has no good enclosure answers [`Interval::ALL`].
     fn bound(&self, b: &Aabb) -> Interval;
 
+    /// Enclosures over many boxes; `out` is as long as `boxes`. Must give exactly what
+    /// [`Field::bound`] gives, box by box.
+    fn bounds(&self, boxes: &[Aabb], out: &mut [Interval]) {
+        for (bound, b) in out.iter_mut().zip(boxes) {
+            *bound = self.bound(b);
+        }
+    }
+
     /// A box outside which f > 0.
     fn support(&self) -> Aabb;
 

@@ -1,7 +1,7 @@
 //! One field to one mesh: sample, extract, drop crumbs, inspect.
 
 use super::report::FrameReport;
-use crate::check::{self, Options, drop_crumbs, inspect, solid_pieces};
+use crate::check::{self, Options};
 use crate::field::Shared;
 use crate::field::sample::{sample, undecided, undecided_at_most};
 use crate::grid::Lattice;
@@ -105,20 +105,11 @@ pub fn make(
         return Ok(FrameResult { mesh: None, report: r });
     }
     job.stage("check");
-    let mesh = timed(&mut r.seconds.check, || swept(mesh, work.crumbs, &mut r.crumbs));
-    crate::job::check(job)?;
     let options = Options { self_intersections: work.verify };
-    let health = timed(&mut r.seconds.check, || inspect(&mesh, &options));
-    r.pieces = Some(timed(&mut r.seconds.check, || solid_pieces(&mesh)).solids as u64);
-    r.health = Some(health);
-    Ok(FrameResult { mesh: Some(mesh), report: r })
-}
-
-fn swept(mesh: TriMesh, share: f64, crumbs: &mut check::Crumbs) -> TriMesh {
-    if share <= 0.0 {
-        return mesh;
-    }
-    let (mesh, dropped) = drop_crumbs(&mesh, share);
-    *crumbs = dropped;
-    mesh
+    let swept = timed(&mut r.seconds.check, || check::sweep(mesh, work.crumbs, &options));
+    crate::job::check(job)?;
+    r.crumbs = swept.crumbs;
+    r.pieces = Some(swept.pieces.solids as u64);
+    r.health = Some(swept.health);
+    Ok(FrameResult { mesh: Some(swept.mesh), report: r })
 }

@@ -15,6 +15,7 @@ use crate::mesh::TriMesh;
 use crate::num::Aabb;
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Lengths relative to the diagonal of the mesh's box.
 ///
@@ -153,9 +154,15 @@ impl<'a> Work<'a> {
         let open = if self.options.thicken.is_some() { self.holed(&open) } else { open };
         let used: Vec<u32> =
             closed.iter().chain(&open).flat_map(|s| s.faces.iter().copied()).collect();
-        let inside = self.inside(&closed, &open);
         let faces: Vec<_> = used.iter().map(|&f| self.soup.faces[f as usize]).collect();
-        let surface = Surface::new(&self.soup.points, &faces, &inside, self.scale, job)?;
+        let triangles: Vec<_> = faces.iter().map(|f| self.corners(f)).collect();
+        let all = Arc::new(Bvh::new(&triangles));
+        let inside = match (&closed[..], &open[..]) {
+            ([], _) => Inside::over(&all, &self.rim(&open), false),
+            (_, []) => Inside::over(&all, &[], true),
+            _ => self.inside(&closed, &open),
+        };
+        let surface = Surface::new(triangles, &faces, &all, &inside, self.scale, job)?;
         let mut sheets = self.sheets(&inside);
         if self.options.thicken.is_some_and(|t| t.which == Which::Open) {
             sheets.extend(&surface.sheets);
@@ -163,7 +170,7 @@ impl<'a> Work<'a> {
         let sheet = self.sheet(&sheets);
         self.tell(&surface, sheet.is_some());
         let blur = if surface.contact_faces > 0 { 4.0 * self.scale.slack } else { 0.0 };
-        let solid = (!surface.triangles.is_empty()).then(|| Solid::new(surface, inside, blur));
+        let solid = (!surface.triangles.is_empty()).then(|| Solid::new(surface, inside, blur, all));
         Ok((solid, sheet))
     }
 
@@ -183,18 +190,20 @@ impl<'a> Work<'a> {
             let all = shells.iter().flat_map(|s| &s.faces);
             all.map(|&f| self.corners(&self.soup.faces[f as usize])).collect()
         };
-        // rims of different shells may cancel
+        Inside::new(&faces(closed), &faces(open), &self.rim(open))
+    }
+
+    /// The rims of open shells, less what cancels.
+    fn rim(&self, open: &[&Shell]) -> Vec<([DVec3; 2], u32)> {
         let mut net: BTreeMap<[u32; 2], i64> = BTreeMap::new();
         for &([a, b], n) in open.iter().flat_map(|s| &s.rim) {
             let sign = if a < b { 1 } else { -1 };
             *net.entry([a.min(b), a.max(b)]).or_default() += sign * i64::from(n);
         }
-        let rim: Vec<_> = net
-            .into_iter()
+        net.into_iter()
             .filter(|&(_, n)| n != 0)
             .map(|(ends, n)| (ends.map(|v| self.at(v)), n.unsigned_abs() as u32))
-            .collect();
-        Inside::new(&faces(closed), &faces(open), &rim)
+            .collect()
     }
 
     /// Those of the open shells that enclose something but for holes.
@@ -208,8 +217,7 @@ impl<'a> Work<'a> {
                 let [a, b, c] = self.corners(face);
                 let off = (b - a).cross(c - a).normalize_or_zero() * self.scale.offset;
                 let middle = (a + b + c) / 3.0;
-                let (behind, front) =
-                    (inside.open_number(middle - off), inside.open_number(middle + off));
+                let [behind, front, ..] = inside.open_numbers(&[middle - off, middle + off]);
                 let size = self.area(face);
                 all += size;
                 yes += if behind >= SOLID && front <= 1.0 - SOLID { size } else { 0.0 };

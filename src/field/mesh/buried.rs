@@ -4,18 +4,21 @@
 use super::cut::{Class, Cutter, Scale};
 use super::inside::Inside;
 use super::soup::{Sets, edges, sides};
-use crate::bvh::{Bvh, apart};
+use crate::bvh::{Bvh, Winding, apart};
 use crate::job::{Cancelled, Job, check};
-use crate::num::Aabb;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Faces worked on between two looks at the job and the limits.
-const CHUNK: usize = 2048;
+/// Faces whose contacts are looked for together.
+const RUN: usize = 64;
+/// Runs, or faces, worked on between two looks at the job and the limits.
+const CHUNK: usize = 256;
 /// Work spent on cutting in all, and for each face; some seconds at most. Faces beyond are left
 /// whole, by their middles.
 const LIMIT: usize = 10_000_000;
 const LIMIT_EACH: usize = 500;
+/// Faces whose two sides are looked at together.
+const GROUP: usize = Winding::LANES / 2;
 /// Faces looked at to tell that a patch is of one class.
 const PROBES: usize = 8;
 /// Faces lower than this many slacks are no sheets but leftovers at seams.
@@ -35,6 +38,8 @@ pub(super) enum Trust {
 /// The surface, ready for measuring distances.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Surface {
+    /// Whether it is all faces as they were given, in their order.
+    pub whole: bool,
     pub triangles: Vec<[DVec3; 3]>,
     /// For each, when its sides tell inside from outside.
     pub trust: Vec<Trust>,
@@ -99,19 +104,19 @@ fn middle(t: &[DVec3; 3]) -> DVec3 {
 }
 
 impl Surface {
-    /// Sorts out the faces of the shells that `inside` is made of.
+    /// Sorts out the faces of the shells that `inside` is made of; `bvh` is the tree over them.
     pub(super) fn new(
-        points: &[DVec3],
+        triangles: Vec<[DVec3; 3]>,
         faces: &[[u32; 3]],
+        bvh: &Bvh,
         inside: &Inside,
         scale: Scale,
         job: &dyn Job,
     ) -> Result<Self, Cancelled> {
-        let triangles: Vec<_> = faces.iter().map(|f| f.map(|v| points[v as usize])).collect();
         let normal = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]).normalize_or_zero();
-        let normals = triangles.iter().map(normal).collect();
+        let normals = triangles.par_iter().map(normal).collect();
         let all = Faces { faces, triangles, normals, inside, scale };
-        let contacts = all.contacts(job)?;
+        let contacts = all.contacts(bvh, job)?;
         let mut surface = Self::default();
         for (group, class, trust) in all.untouched(&contacts, job)? {
             for f in group {
@@ -124,6 +129,7 @@ impl Surface {
             }
         }
         all.touched(&contacts, &mut surface, job)?;
+        surface.whole = surface.triangles == all.triangles;
         Ok(surface)
     }
 
@@ -152,70 +158,78 @@ impl Surface {
 impl Faces<'_> {
     /// What lies on both sides of a point of a face.
     fn class(&self, p: DVec3, normal: DVec3) -> Class {
-        let off = normal * self.scale.offset;
-        match (self.inside.at(p + off), self.inside.at(p - off)) {
-            (false, true) => Class::Surface,
-            (true, false) => Class::Reversed,
-            (true, true) => Class::Buried,
-            (false, false) => Class::Nothing,
-        }
+        self.classes(&[(p, normal)])[0]
     }
 
-    /// For each face the faces that touch or cross it other than where they are joined.
-    fn contacts(&self, job: &dyn Job) -> Result<Vec<Vec<u32>>, Cancelled> {
-        let bvh = Bvh::new(&self.triangles);
+    /// What lies on both sides of up to four points of faces.
+    fn classes(&self, at: &[(DVec3, DVec3)]) -> [Class; GROUP] {
+        let off = |&(p, normal): &(DVec3, DVec3)| {
+            let off = normal * self.scale.offset;
+            [p + off, p - off]
+        };
+        let points: Vec<DVec3> = at.iter().flat_map(off).collect();
+        let inside = self.inside.which(&points);
+        std::array::from_fn(|i| match inside >> (2 * i) & 3 {
+            0b10 => Class::Surface,
+            0b01 => Class::Reversed,
+            0b11 => Class::Buried,
+            _ => Class::Nothing,
+        })
+    }
+
+    /// For each face the faces that touch or cross it other than where they are joined, in order.
+    fn contacts(&self, bvh: &Bvh, job: &dyn Job) -> Result<Vec<Vec<u32>>, Cancelled> {
         let n = self.triangles.len();
         let mut contacts = vec![vec![]; n];
         // a mesh that crosses itself everywhere is not worth more memory than this
         let mut left = 64 * n + 1_000_000;
-        for start in (0..n).step_by(CHUNK) {
+        for start in (0..n).step_by(CHUNK * RUN) {
             check(job)?;
             job.done(start as f64 / n as f64);
-            let found: Vec<Vec<u32>> = (start..n.min(start + CHUNK))
+            let end = n.min(start + CHUNK * RUN);
+            let found: Vec<Vec<[u32; 2]>> = (start..end)
                 .into_par_iter()
-                .map(|i| self.contacts_of(&bvh, i))
+                .step_by(RUN)
+                .map(|first| {
+                    let mut pairs = bvh.close_pairs(first..end.min(first + RUN), self.scale.slack);
+                    pairs.retain(|&pair| self.touch(pair));
+                    pairs
+                })
                 .collect();
-            for (i, found) in found.into_iter().enumerate() {
-                for j in found.into_iter().take(left) {
-                    left -= 1;
-                    contacts[start + i].push(j);
-                    contacts[j as usize].push((start + i) as u32);
-                }
+            for [i, j] in found.into_iter().flatten().take(left) {
+                left -= 1;
+                contacts[i as usize].push(j);
+                contacts[j as usize].push(i);
             }
         }
+        contacts.iter_mut().for_each(|c| c.sort_unstable());
         Ok(contacts)
     }
 
-    /// The later faces that face `i` is in contact with.
-    fn contacts_of(&self, bvh: &Bvh, i: usize) -> Vec<u32> {
-        let t = &self.triangles[i];
-        if self.normals[i] == DVec3::ZERO {
-            return vec![];
+    /// Whether two faces touch or cross other than where they are joined.
+    fn touch(&self, pair: [u32; 2]) -> bool {
+        let [i, j] = pair.map(|i| i as usize);
+        if self.normals[i] == DVec3::ZERO || self.normals[j] == DVec3::ZERO {
+            return false;
         }
         let slack = self.scale.slack;
-        let mut found = bvh.overlapping(&Aabb::of(*t), slack);
-        found.retain(|&j| {
-            let u = &self.triangles[j as usize];
-            if j as usize <= i || self.normals[j as usize] == DVec3::ZERO {
-                return false;
+        let (t, u) = (&self.triangles[i], &self.triangles[j]);
+        let (f, g) = (self.faces[i], self.faces[j]);
+        let common = [0, 1, 2].map(|k| g.iter().position(|&v| v == f[k]));
+        match common {
+            [None, None, None] => !apart(t, u, slack),
+            [Some(_), Some(_), Some(_)] => true,
+            [None, Some(_), Some(_)] => folded(t, 0, u, g, f, slack),
+            [Some(_), None, Some(_)] => folded(t, 1, u, g, f, slack),
+            [Some(_), Some(_), None] => folded(t, 2, u, g, f, slack),
+            // joined at a corner: one's opposite side must reach the other
+            [k, l, m] => {
+                let opposite = |t: &[DVec3; 3], k: usize| [t[(k + 1) % 3], t[(k + 2) % 3]];
+                let own = common.iter().position(Option::is_some).unwrap_or(0);
+                let other = k.or(l).or(m).unwrap_or(0);
+                !apart(&opposite(t, own), u, slack) || !apart(&opposite(u, other), t, slack)
             }
-            let (f, g) = (self.faces[i], self.faces[j as usize]);
-            let common: Vec<usize> = (0..3).filter(|&k| g.contains(&f[k])).collect();
-            match common[..] {
-                [] => !apart(t, u, slack),
-                // joined at a corner: one's opposite side must reach the other
-                [k] => {
-                    let l = (0..3).find(|&l| g[l] == f[k]).unwrap_or(0);
-                    let (s, r) =
-                        ([t[(k + 1) % 3], t[(k + 2) % 3]], [u[(l + 1) % 3], u[(l + 2) % 3]]);
-                    !apart(&s, u, slack) || !apart(&r, t, slack)
-                }
-                [k, l] => folded(t, 3 - k - l, u, g, f, slack),
-                _ => true,
-            }
-        });
-        found.sort_unstable();
-        found
+        }
     }
 
     /// Faces without contacts, by patches of one class each, with their trust.
@@ -228,13 +242,13 @@ impl Faces<'_> {
         let free =
             |f: u32| contacts[f as usize].is_empty() && self.normals[f as usize] != DVec3::ZERO;
         let all: Vec<u32> = (0..self.faces.len() as u32).filter(|&f| free(f)).collect();
-        let alone = |f: u32| {
-            let (class, trust) = self.alone(f);
-            (vec![f], class, trust)
+        let alone = |faces: &[u32]| -> Vec<(Vec<u32>, Class, Trust)> {
+            let known = self.alone(faces);
+            faces.iter().zip(known).map(|(&f, (class, trust))| (vec![f], class, trust)).collect()
         };
         if !self.inside.is_closed() {
             // the winding number varies along an open shell
-            return Ok(all.into_par_iter().map(alone).collect());
+            return Ok(all.par_chunks(GROUP).flat_map_iter(alone).collect());
         }
         let sides = sides(self.faces);
         let mut sets = Sets::new(self.faces.len());
@@ -252,7 +266,10 @@ impl Faces<'_> {
             roots.chunk_by(|a, b| a.0 == b.0).map(|c| c.iter().map(|r| r.1).collect()).collect();
         let patch = |patch: Vec<u32>| match self.patch(&patch) {
             Some(class) => vec![(patch, class, Trust::Within(0.0))],
-            None => patch.into_iter().map(alone).map(|(f, c, _)| (f, c, Trust::Never)).collect(),
+            None => {
+                let known = patch.chunks(GROUP).flat_map(alone);
+                known.map(|(f, class, _)| (f, class, Trust::Never)).collect()
+            }
         };
         Ok(patches.into_par_iter().flat_map_iter(patch).collect())
     }
@@ -268,20 +285,33 @@ impl Faces<'_> {
         patch.iter().step_by(step).all(|&f| class(f) == first).then_some(first)
     }
 
-    /// The class of one face, surface if part of it seems to be, and its trust.
-    fn alone(&self, f: u32) -> (Class, Trust) {
-        let (t, n) = (&self.triangles[f as usize], self.normals[f as usize]);
-        let centre = middle(t);
-        let class = self.class(centre, n);
-        let radius = t.iter().fold(0.0, |r: f64, p| r.max(p.distance(centre)));
-        let off = n * self.scale.offset;
-        if self.inside.sharp(centre + off, radius + 2.0 * self.scale.offset) {
-            return (class, Trust::Within(0.0));
-        }
-        let toward = |p: DVec3| self.class(centre + (p - centre) * 0.75, n);
-        let is_surface = |c: Class| matches!(c, Class::Surface | Class::Reversed);
-        let seen = [class, toward(t[0]), toward(t[1]), toward(t[2])];
-        (seen.into_iter().find(|&c| is_surface(c)).unwrap_or(class), Trust::Local)
+    /// The classes of up to four faces, surface where part of one seems to be, and their trust.
+    fn alone(&self, faces: &[u32]) -> Vec<(Class, Trust)> {
+        let offset = self.scale.offset;
+        let places: Vec<(DVec3, DVec3)> = faces
+            .iter()
+            .map(|&f| (middle(&self.triangles[f as usize]), self.normals[f as usize]))
+            .collect();
+        let ball = |(&f, &(centre, n)): (&u32, &(DVec3, DVec3))| {
+            let corners = self.triangles[f as usize].iter();
+            let radius = corners.fold(0.0, |r: f64, p| r.max(p.distance(centre)));
+            (centre + n * offset, radius + 2.0 * offset)
+        };
+        let balls: Vec<_> = faces.iter().zip(&places).map(ball).collect();
+        let (classes, sharp) = (self.classes(&places), self.inside.which_sharp(&balls));
+        let known = faces.iter().zip(places).zip(classes).enumerate();
+        known
+            .map(|(i, ((&f, (centre, n)), class))| {
+                if sharp >> i & 1 == 1 {
+                    return (class, Trust::Within(0.0));
+                }
+                let t = &self.triangles[f as usize];
+                let toward = t.map(|p| (centre + (p - centre) * 0.75, n));
+                let is_surface = |c: &Class| matches!(c, Class::Surface | Class::Reversed);
+                let [a, b, c, _] = self.classes(&toward);
+                ([class, a, b, c].into_iter().find(is_surface).unwrap_or(class), Trust::Local)
+            })
+            .collect()
     }
 
     /// Cuts the faces in contact and adds what is surface.
@@ -297,7 +327,7 @@ impl Faces<'_> {
         let limit = LIMIT + LIMIT_EACH * self.faces.len();
         let mut spent = 0;
         let classify = |p: DVec3, n: DVec3| self.class(p, n);
-        for chunk in all.chunks(CHUNK / 8) {
+        for chunk in all.chunks(CHUNK) {
             check(job)?;
             let full = spent > limit;
             let pieces: Vec<_> = chunk

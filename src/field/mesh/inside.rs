@@ -1,8 +1,9 @@
 //! Inside or outside, by winding numbers.
 
-use crate::bvh::{Rim, Winding};
+use crate::bvh::{Bvh, Rim, Winding};
 use crate::num::Aabb;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// What the tree's winding number is off by at most where it is not refined, with room.
 const TREE_ERROR: f64 = 0.05;
@@ -26,7 +27,16 @@ impl Inside {
         open: &[[DVec3; 3]],
         rim: &[([DVec3; 2], u32)],
     ) -> Self {
-        let (closed, open) = (Winding::new(closed), Winding::new(open));
+        Self::of(Winding::new(closed), Winding::new(open), rim)
+    }
+
+    /// From the tree over all faces, which are either those of closed shells or those of open ones.
+    pub(super) fn over(all: &Arc<Bvh>, rim: &[([DVec3; 2], u32)], closed: bool) -> Self {
+        let (all, none) = (Winding::over(all.clone()), Winding::new(&[]));
+        if closed { Self::of(all, none, rim) } else { Self::of(none, all, rim) }
+    }
+
+    fn of(closed: Winding, open: Winding, rim: &[([DVec3; 2], u32)]) -> Self {
         let bounds = closed.bounds().hull(open.bounds());
         Self { closed, open, rim: Rim::new(rim), bounds }
     }
@@ -46,37 +56,70 @@ impl Inside {
         self.bounds.contains(p) && self.raw(p)
     }
 
+    /// Which of up to eight points are inside, a bit for each.
+    pub(super) fn which(&self, at: &[DVec3]) -> u8 {
+        let there = which(at, |_, p| self.bounds.contains(p));
+        self.which_raw(at, there)
+    }
+
     /// Whether `p` is inside by winding numbers alone.
     pub(super) fn raw(&self, p: DVec3) -> bool {
-        let closed = self.closed_number(p);
-        if closed >= 1.0 || self.open.is_empty() {
-            return closed >= 1.0;
+        self.which_raw(&[p], 1) != 0
+    }
+
+    /// Which of up to eight points, of those whose bit is set in `of`, are inside by winding numbers
+    /// alone. Each gets the answer that it gets alone.
+    pub(super) fn which_raw(&self, at: &[DVec3], of: u8) -> u8 {
+        let bounds = self.closed.bounds();
+        let near = of & which(at, |_, p| bounds.contains(p));
+        let mut closed = [0.0; Winding::LANES];
+        if near != 0 {
+            let numbers = self.closed.numbers_of(at, near, [0.5; Winding::LANES]);
+            closed = numbers.map(f64::round);
         }
-        let level = 0.5 - closed;
-        self.open.number(p, level) >= level
+        let solid = of & which(at, |i, _| closed[i] >= 1.0);
+        let rest = of & !solid;
+        if rest == 0 || self.open.is_empty() {
+            return solid;
+        }
+        let levels = closed.map(|closed| 0.5 - closed);
+        let open = self.open.numbers_of(at, rest, levels);
+        solid | rest & which(at, |i, _| open[i] >= levels[i])
     }
 
-    fn closed_number(&self, p: DVec3) -> f64 {
-        if self.closed.bounds().contains(p) { self.closed.number(p, 0.5).round() } else { 0.0 }
-    }
-
-    /// The winding number of the open shells, roughly.
-    pub(super) fn open_number(&self, p: DVec3) -> f64 {
-        self.open.rough(p)
+    /// The winding numbers of the open shells at up to eight points, roughly.
+    pub(super) fn open_numbers(&self, at: &[DVec3]) -> [f64; Winding::LANES] {
+        self.open.roughly(at)
     }
 
     /// Whether in that ball only faces part inside from outside (before the cut at the box): the
     /// winding number's smooth part, which the rims make, stays off one half.
     pub(super) fn sharp(&self, centre: DVec3, radius: f64) -> bool {
+        self.which_sharp(&[(centre, radius)]) != 0
+    }
+
+    /// For which of up to eight balls that is so, a bit for each.
+    pub(super) fn which_sharp(&self, balls: &[(DVec3, f64)]) -> u8 {
+        let centres: Vec<DVec3> = balls.iter().map(|b| b.0).collect();
         if self.open.is_empty() {
-            return true;
+            return which(&centres, |_, _| true);
         }
         let most = 0.5 - TREE_ERROR;
-        let change = self.rim.variation(centre, radius, most / radius) * radius;
-        if change >= most {
-            return false;
+        let change = |&(centre, r): &(DVec3, f64)| self.rim.variation(centre, r, most / r) * r;
+        let changes: Vec<f64> = balls.iter().map(change).collect();
+        if changes.iter().all(|&change| change >= most) {
+            return 0;
         }
-        let part = (self.open_number(centre) - 0.5).rem_euclid(1.0);
-        change + TREE_ERROR < part.min(1.0 - part)
+        let numbers = self.open_numbers(&centres);
+        which(&centres, |i, _| {
+            let part = (numbers[i] - 0.5).rem_euclid(1.0);
+            changes[i] < most && changes[i] + TREE_ERROR < part.min(1.0 - part)
+        })
     }
+}
+
+/// The bits of the points for which something holds.
+fn which(at: &[DVec3], holds: impl Fn(usize, DVec3) -> bool) -> u8 {
+    let bits = at.iter().enumerate().filter(|&(i, &p)| holds(i, p));
+    bits.fold(0, |bits, (i, _)| bits | 1 << i)
 }

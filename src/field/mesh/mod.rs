@@ -174,24 +174,32 @@ impl Field for MeshField {
     }
 
     fn bound(&self, b: &Aabb) -> Interval {
-        let radius = b.radius();
-        if !radius.is_finite() {
-            return Interval::ALL;
+        let mut out = [Interval::ALL];
+        self.bounds(&[*b], &mut out);
+        out[0]
+    }
+
+    fn bounds(&self, boxes: &[Aabb], out: &mut [Interval]) {
+        match &self.solid {
+            Some(solid) => solid.bounds(boxes, out),
+            None => out.fill(Interval::ALL),
         }
-        let sheet = self.sheet.as_ref().map(|s| {
+        let Some(sheet) = &self.sheet else {
+            return;
+        };
+        for (b, bound) in boxes.iter().zip(out) {
             let centre = b.centre();
-            let round_off = 1e-12 * (s.half + centre.abs().max_element());
-            Interval::ball(s.faces.distance(centre) - s.half, radius).widen(round_off)
-        });
-        match (self.solid.as_ref().map(|s| s.bound(b)), sheet) {
-            (Some(a), Some(b)) => a.min(b),
-            (Some(a), None) | (None, Some(a)) => a,
-            (None, None) => Interval::ALL,
+            let round_off = 1e-12 * (sheet.half + centre.abs().max_element());
+            if b.radius().is_finite() {
+                let near = sheet.faces.distance(centre) - sheet.half;
+                let near = Interval::ball(near, b.radius()).widen(round_off);
+                *bound = if self.solid.is_some() { bound.min(near) } else { near };
+            }
         }
     }
 
     fn support(&self) -> Aabb {
-        let solid = self.solid.as_ref().map_or(Aabb::EMPTY, Solid::bounds);
+        let solid = self.solid.as_ref().map_or(Aabb::EMPTY, Solid::support);
         let sheet = self.sheet.as_ref().map_or(Aabb::EMPTY, |s| s.faces.bounds().grow(s.half));
         solid.hull(sheet)
     }

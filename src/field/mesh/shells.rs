@@ -1,7 +1,7 @@
 //! Faces joined into shells, oriented alike within each, and their rims.
 
 use super::seams;
-use super::soup::{Sets, edges, sides};
+use super::soup::{Sets, Side, edges, sides};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -33,12 +33,14 @@ impl Shells {
     /// (by area) to agree with the rest, and unites open shells that close each other. Rims within
     /// `tolerance` mm of each other count as one.
     pub(super) fn new(points: &[DVec3], faces: &mut [[u32; 3]], tolerance: f64) -> Self {
-        let (groups, mut flipped_faces) = orient(points, faces);
+        let sides = sides(faces);
+        let (groups, mut flipped_faces) = orient(points, faces, &sides);
         let mut shell_of = vec![0u32; faces.len()];
         for (i, group) in groups.iter().enumerate() {
             group.iter().for_each(|&f| shell_of[f as usize] = i as u32);
         }
-        let mut nets = nets(points, faces, &shell_of, groups.len(), tolerance);
+        let mut nets = nets(points, faces, &sides, &shell_of, groups.len(), tolerance);
+        drop(sides);
         let (bodies, turned) = unite(points, &mut nets);
         let mut shells = vec![];
         for (i, group) in groups.iter().enumerate().filter(|&(i, _)| turned[i]) {
@@ -88,15 +90,18 @@ pub(super) fn rim(net: &Net) -> Vec<([u32; 2], u32)> {
 
 /// Groups of faces joined over two-face edges, each turned to one orientation; and how many faces
 /// were turned.
-fn orient(points: &[DVec3], faces: &mut [[u32; 3]]) -> (Vec<Vec<u32>>, usize) {
-    let all = sides(faces);
-    // neighbour and whether it runs along the common edge in the same direction
-    let mut next: Vec<Vec<(u32, bool)>> = vec![Vec::with_capacity(3); faces.len()];
-    for edge in edges(&all) {
+fn orient(points: &[DVec3], faces: &mut [[u32; 3]], sides: &[Side]) -> (Vec<Vec<u32>>, usize) {
+    // neighbours over the three sides, and whether they run along them in the same direction
+    let mut next = vec![[None; 3]; faces.len()];
+    let mut join = |x: u32, y: u32, clash| {
+        let free = next[x as usize].iter_mut().find(|n| n.is_none());
+        free.into_iter().for_each(|n| *n = Some((y, clash)));
+    };
+    for edge in edges(sides) {
         if let [x, y] = edge {
             let clash = x.forward == y.forward;
-            next[x.face as usize].push((y.face, clash));
-            next[y.face as usize].push((x.face, clash));
+            join(x.face, y.face, clash);
+            join(y.face, x.face, clash);
         }
     }
     let mut turned: Vec<Option<bool>> = vec![None; faces.len()];
@@ -111,7 +116,7 @@ fn orient(points: &[DVec3], faces: &mut [[u32; 3]]) -> (Vec<Vec<u32>>, usize) {
         while done < group.len() {
             let (f, me) = (group[done] as usize, turned[group[done] as usize] == Some(true));
             done += 1;
-            for &(g, clash) in &next[f] {
+            for (g, clash) in next[f].into_iter().flatten() {
                 if turned[g as usize].is_none() {
                     turned[g as usize] = Some(me ^ clash);
                     group.push(g);
@@ -136,21 +141,29 @@ fn orient(points: &[DVec3], faces: &mut [[u32; 3]]) -> (Vec<Vec<u32>>, usize) {
 fn nets(
     points: &[DVec3],
     faces: &[[u32; 3]],
+    sides: &[Side],
     shell_of: &[u32],
     shells: usize,
     tolerance: f64,
 ) -> Vec<Net> {
-    let all = sides(faces);
     let mut raw: Vec<(u32, u32, u32, i32)> = vec![];
-    for edge in edges(&all) {
+    for edge in edges(sides) {
         let start = raw.len();
+        let [a, b] = edge[0].ends();
         for s in edge {
             let shell = shell_of[s.face as usize];
-            let n = if s.forward { 1 } else { -1 };
+            // faces may have been turned since
+            let f = faces[s.face as usize];
+            let forward = (0..3).any(|i| f[i] == a && f[(i + 1) % 3] == b);
+            let n = if forward { 1 } else { -1 };
             match raw[start..].iter_mut().find(|r| r.0 == shell) {
                 Some(r) => r.3 += n,
-                None => raw.push((shell, s.a, s.b, n)),
+                None => raw.push((shell, a, b, n)),
             }
+        }
+        let open = raw[start..].iter().filter(|r| r.3 != 0).count();
+        if open == 0 {
+            raw.truncate(start);
         }
     }
     raw.retain(|r| r.3 != 0);

@@ -1,8 +1,9 @@
 //! From any triangle mesh to faces over welded points, each face once.
 
 use super::MeshFieldError;
-use crate::mesh::TriMesh;
+use crate::mesh::{TriMesh, twins};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Faces over points that differ from each other.
@@ -18,32 +19,42 @@ pub(super) struct Soup {
     pub degenerate: usize,
 }
 
-/// One side of a face, with its ends in rising order.
+/// One side of a face. Sides compare by their ends, then by face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Side {
-    pub a: u32,
-    pub b: u32,
+    /// The lower end and the higher one, in one number.
+    edge: u64,
     pub face: u32,
-    /// Whether the face runs from `a` to `b`.
+    /// Whether the face runs from the lower end to the higher one.
     pub forward: bool,
+}
+
+impl Side {
+    /// The side from `p` to `q`.
+    fn new(p: u32, q: u32, face: u32) -> Self {
+        Self { edge: u64::from(p.min(q)) << 32 | u64::from(p.max(q)), face, forward: p < q }
+    }
+
+    /// Its ends, in rising order.
+    pub(super) fn ends(self) -> [u32; 2] {
+        [(self.edge >> 32) as u32, self.edge as u32]
+    }
 }
 
 /// All sides of all faces, sorted so that the sides of one edge are neighbours.
 pub(super) fn sides(faces: &[[u32; 3]]) -> Vec<Side> {
     let mut out = Vec::with_capacity(faces.len() * 3);
-    for (face, f) in faces.iter().enumerate() {
-        for i in 0..3 {
-            let (p, q) = (f[i], f[(i + 1) % 3]);
-            out.push(Side { a: p.min(q), b: p.max(q), face: face as u32, forward: p < q });
-        }
+    for (face, &[a, b, c]) in faces.iter().enumerate() {
+        let face = face as u32;
+        out.extend([Side::new(a, b, face), Side::new(b, c, face), Side::new(c, a, face)]);
     }
-    out.sort_unstable();
+    out.par_sort_unstable();
     out
 }
 
 /// Runs of sides that share an edge.
 pub(super) fn edges(sides: &[Side]) -> impl Iterator<Item = &[Side]> {
-    sides.chunk_by(|x, y| (x.a, x.b) == (y.a, y.b))
+    sides.chunk_by(|x, y| x.edge == y.edge)
 }
 
 /// Disjoint sets of small numbers.
@@ -89,28 +100,33 @@ impl Soup {
 
     /// Gives equal positions one index and drops faces that lose a corner by it.
     fn weld(&mut self, mesh: &TriMesh) -> Result<Vec<[u32; 3]>, MeshFieldError> {
-        let mut known: HashMap<[u64; 3], u32> = HashMap::new();
-        let mut out = Vec::with_capacity(mesh.faces.len());
-        for (index, face) in mesh.faces.iter().enumerate() {
-            let mut welded = [0; 3];
-            for (w, &v) in welded.iter_mut().zip(face) {
-                let points = mesh.points.len();
-                let Some(&p) = mesh.points.get(v as usize) else {
-                    return Err(MeshFieldError::Corner { face: index, corner: v, points });
+        let points = mesh.points.len();
+        let mut used = vec![false; points];
+        for (face, &corners) in mesh.faces.iter().enumerate() {
+            for corner in corners {
+                let Some(p) = mesh.points.get(corner as usize) else {
+                    return Err(MeshFieldError::Corner { face, corner, points });
                 };
                 // squares and products of three lengths must stay finite
                 if !p.abs().cmplt(DVec3::splat(1e60)).all() {
-                    return Err(MeshFieldError::Coordinate { face: index, corner: v });
+                    return Err(MeshFieldError::Coordinate { face, corner });
                 }
-                // adding zero turns -0 into 0
-                let key = (p + DVec3::ZERO).to_array().map(f64::to_bits);
-                *w = *known.entry(key).or_insert_with(|| {
-                    self.points.push(p);
-                    self.points.len() as u32 - 1
-                });
+                used[corner as usize] = true;
             }
-            let [a, b, c] = welded;
-            if a == b || b == c || c == a { self.degenerate += 1 } else { out.push(welded) }
+        }
+        let twin = twins(&mesh.points, &used);
+        let mut place = vec![u32::MAX; points];
+        let mut out = Vec::with_capacity(mesh.faces.len());
+        for face in &mesh.faces {
+            let [a, b, c] = face.map(|v| {
+                let first = twin[v as usize] as usize;
+                if place[first] == u32::MAX {
+                    place[first] = self.points.len() as u32;
+                    self.points.push(mesh.points[v as usize]);
+                }
+                place[first]
+            });
+            if a == b || b == c || c == a { self.degenerate += 1 } else { out.push([a, b, c]) }
         }
         Ok(out)
     }
@@ -118,23 +134,27 @@ impl Soup {
     /// Keeps the first of every set of faces with the same corners; what lay there in both
     /// directions is returned instead.
     fn single(&mut self, welded: &[[u32; 3]]) -> Vec<[u32; 3]> {
-        let turn = |f: &[u32; 3]| {
-            let first = (0..3).min_by_key(|&i| f[i]).unwrap_or(0);
-            let (p, q) = (f[(first + 1) % 3], f[(first + 2) % 3]);
-            ([f[first], p.min(q), p.max(q)], p < q)
+        let key = |(i, f): (usize, &[u32; 3])| {
+            let mut corners = *f;
+            corners.sort_unstable();
+            let first = f.iter().position(|&v| v == corners[0]).unwrap_or(0);
+            (corners, i as u32, f[(first + 1) % 3] == corners[1])
         };
-        let mut seen: HashMap<[u32; 3], [bool; 2]> = HashMap::new();
-        for f in welded {
-            let (key, forward) = turn(f);
-            seen.entry(key).or_default()[usize::from(forward)] = true;
+        let mut keys: Vec<_> = welded.par_iter().enumerate().map(key).collect();
+        keys.par_sort_unstable();
+        // what becomes of a face: the first of its corners stays, single or double
+        let mut kept = vec![None; welded.len()];
+        for same in keys.chunk_by(|x, y| x.0 == y.0) {
+            let both = same.iter().any(|k| k.2) && same.iter().any(|k| !k.2);
+            kept[same[0].1 as usize] = Some(both);
+            self.duplicates += same.len() - 1;
         }
         let mut double = vec![];
-        for f in welded {
-            // the first to come takes the entry
-            match seen.remove(&turn(f).0) {
-                Some([true, true]) => double.push(*f),
-                Some(_) => self.faces.push(*f),
-                None => self.duplicates += 1,
+        for (f, kept) in welded.iter().zip(kept) {
+            match kept {
+                Some(true) => double.push(*f),
+                Some(false) => self.faces.push(*f),
+                None => {}
             }
         }
         double
@@ -143,6 +163,9 @@ impl Soup {
     /// Double faces are sheets, unless a patch of them closes a gap of the other faces, or itself:
     /// then it is wall, and only doubled for show.
     fn close_with(&mut self, double: Vec<[u32; 3]>) {
+        if double.is_empty() {
+            return;
+        }
         let ours = self.faces.len() as u32;
         let all: Vec<_> = self.faces.iter().chain(&double).copied().collect();
         let sides = sides(&all);

@@ -4,7 +4,7 @@ use super::{on_border, region};
 use crate::field::Field;
 use crate::grid::{BRICK, Bricks, Lattice};
 use crate::job::{Cancelled, Job, check};
-use crate::num::Aabb;
+use crate::num::{Aabb, Interval};
 use rayon::prelude::*;
 
 /// The one sign that a box of space has.
@@ -54,30 +54,51 @@ impl<'a> Pruner<'a> {
         Self { f, lattice, support: f.support().grow(slack), slack }
     }
 
+    /// The sign each whole box has, if field and bound can tell.
+    fn sides(&self, boxes: &[Aabb]) -> Vec<Option<Side>> {
+        let near = |b: &Aabb| !b.meet(self.support).is_empty();
+        let asked: Vec<Aabb> = boxes.iter().copied().filter(near).collect();
+        let mut bounds = vec![Interval::ALL; asked.len()];
+        self.f.bounds(&asked, &mut bounds);
+        let mut bounds = bounds.into_iter();
+        let side = |b: &Aabb| {
+            let bound = if near(b) { bounds.next()? } else { return Some(Side::Outside) };
+            match bound {
+                Interval { lo, .. } if lo > self.slack => Some(Side::Outside),
+                Interval { hi, .. } if hi < -self.slack => Some(Side::Inside),
+                _ => None,
+            }
+        };
+        boxes.iter().map(side).collect()
+    }
+
     /// The sign the whole box has, if field and bound can tell.
     pub(super) fn side(&self, b: &Aabb) -> Option<Side> {
-        if b.meet(self.support).is_empty() {
-            return Some(Side::Outside);
-        }
-        let bound = self.f.bound(b);
-        if bound.lo > self.slack {
-            Some(Side::Outside)
-        } else if bound.hi < -self.slack {
-            Some(Side::Inside)
-        } else {
-            None
-        }
+        self.sides(&[*b])[0]
     }
 
     /// The sign of all samples from `lo` to `lo + cells`, both included. The border is outside, so
     /// what reaches it is never all inside.
     pub(super) fn closed_side(&self, lo: [u32; 3], cells: u32) -> Option<Side> {
+        self.closed_sides(&[lo], cells)[0]
+    }
+
+    /// The same for several corners `lo`.
+    fn closed_sides(&self, lo: &[[u32; 3]], cells: u32) -> Vec<Option<Side>> {
         let last = |a: usize| self.lattice.size[a].saturating_sub(1);
-        let hi: [u32; 3] = std::array::from_fn(|a| lo[a].saturating_add(cells).min(last(a)));
-        let lo: [u32; 3] = std::array::from_fn(|a| lo[a].min(hi[a]));
-        let side = self.side(&region(self.lattice, lo, hi))?;
-        let reaches = on_border(self.lattice, lo) || on_border(self.lattice, hi);
-        if side == Side::Inside && reaches { None } else { Some(side) }
+        let corners = |lo: &[u32; 3]| -> [[u32; 3]; 2] {
+            let hi: [u32; 3] = std::array::from_fn(|a| lo[a].saturating_add(cells).min(last(a)));
+            [std::array::from_fn(|a| lo[a].min(hi[a])), hi]
+        };
+        let corners: Vec<_> = lo.iter().map(corners).collect();
+        let boxes: Vec<_> = corners.iter().map(|&[lo, hi]| region(self.lattice, lo, hi)).collect();
+        let sides = corners.iter().zip(self.sides(&boxes));
+        sides
+            .map(|(corners, side)| {
+                let reaches = corners.iter().any(|&c| on_border(self.lattice, c));
+                side.filter(|&side| side == Side::Outside || !reaches)
+            })
+            .collect()
     }
 
     /// Sorts all bricks by their bounds, level by level.
@@ -90,13 +111,14 @@ impl<'a> Pruner<'a> {
             return Ok(split);
         }
         loop {
-            let ask = |n: &Node| {
+            let ask = |nodes: &[Node]| {
                 check(job)?;
-                Ok((*n, self.verdict(*n)))
+                Ok(self.verdicts(nodes, level))
             };
-            let asked = open.par_iter().map(ask).collect::<Result<Vec<_>, Cancelled>>()?;
-            open.clear();
-            for (node, verdict) in asked {
+            let asked = open.par_chunks(8).map(ask).collect::<Result<Vec<_>, Cancelled>>()?;
+            for (node, verdict) in
+                std::mem::take(&mut open).into_iter().zip(asked.into_iter().flatten())
+            {
                 match verdict {
                     Verdict::One(Side::Outside) => {}
                     Verdict::One(Side::Inside) => split.inside.extend(node.bricks(bricks)),
@@ -112,21 +134,26 @@ impl<'a> Pruner<'a> {
         }
     }
 
-    fn verdict(&self, node: Node) -> Verdict {
-        let lo = node.lo.map(|b| b * BRICK);
-        match self.closed_side(lo, BRICK << node.level) {
-            Some(side) => Verdict::One(side),
-            None if node.level == 0 => self.leaf(lo),
-            None => Verdict::Open,
-        }
+    /// What the bounds say of some nodes of one level.
+    fn verdicts(&self, nodes: &[Node], level: u32) -> Vec<Verdict> {
+        let lo: Vec<_> = nodes.iter().map(|n| n.lo.map(|b| b * BRICK)).collect();
+        let sides = lo.iter().zip(self.closed_sides(&lo, BRICK << level));
+        sides
+            .map(|(&lo, side)| match side {
+                Some(side) => Verdict::One(side),
+                None if level == 0 => self.leaf(lo),
+                None => Verdict::Open,
+            })
+            .collect()
     }
 
     fn leaf(&self, lo: [u32; 3]) -> Verdict {
-        let cubes: Cubes = std::array::from_fn(|n| {
-            let at = cube(lo, n);
-            let beyond = (0..3).any(|a| at[a] >= self.lattice.size[a]);
-            if beyond { Some(Side::Outside) } else { self.closed_side(at, CUBE) }
-        });
+        let at: [_; 8] = std::array::from_fn(|n| cube(lo, n));
+        let beyond = |at: &[u32; 3]| (0..3).any(|a| at[a] >= self.lattice.size[a]);
+        let there: Vec<_> = at.iter().copied().filter(|at| !beyond(at)).collect();
+        let mut sides = self.closed_sides(&there, CUBE).into_iter();
+        let cubes: Cubes =
+            at.map(|at| if beyond(&at) { Some(Side::Outside) } else { sides.next().flatten() });
         match cubes[0] {
             Some(side) if cubes.iter().all(|&c| c == cubes[0]) => Verdict::One(side),
             _ => Verdict::Leaf(cubes),

@@ -15,6 +15,7 @@ use super::{
     read::{Format, kind_name, parse},
 };
 use crate::place::beside;
+use rayon::prelude::*;
 use std::{
     fmt::Display,
     fs,
@@ -48,10 +49,34 @@ pub fn write(path: &Path, mesh: &TriMesh, note: &str, force: bool) -> Result<u64
         return Err(MeshError::Empty { path: path.into(), why: "no triangles to write".into() });
     }
     sound(mesh).map_err(unfaithful)?;
+    if matches!(target, Target::Stl) && stl::welds_back(mesh) {
+        return write_stl(path, mesh, &plain(note), force);
+    }
     let bytes = encode(target, mesh, &plain(note)).map_err(unfaithful)?;
     same(&bytes, target, mesh).map_err(unfaithful)?;
-    place(path, &[&bytes], force)?;
-    Ok(bytes.len() as u64)
+    let size = bytes.len() as u64;
+    place(path, std::iter::once(Ok(bytes)), force)?;
+    Ok(size)
+}
+
+/// Faces of an STL that are held in memory as they will be written.
+const AT_ONCE: usize = 1 << 18;
+
+/// Part by part, so that the file need not be in memory as a whole; each is compared with the mesh
+/// before it is written.
+fn write_stl(path: &Path, mesh: &TriMesh, note: &str, force: bool) -> Result<u64, MeshError> {
+    let unfaithful = |why: String| MeshError::Unfaithful { path: path.into(), why };
+    let head = stl::head(many(mesh.faces.len(), "faces").map_err(unfaithful)?, note);
+    let facets = mesh.faces.chunks(AT_ONCE).enumerate().map(|(i, faces)| {
+        let facets = stl::facets(mesh, faces);
+        if stl::hold(&facets, mesh, faces) {
+            return Ok(facets);
+        }
+        let (first, last) = (i * AT_ONCE, i * AT_ONCE + faces.len() - 1);
+        Err(unfaithful(format!("faces {first} to {last} do not come back as they are")))
+    });
+    place(path, std::iter::once(Ok(head)).chain(facets), force)?;
+    Ok((stl::HEAD + stl::FACET * mesh.faces.len()) as u64)
 }
 
 /// Whether [`write()`] would take this path: a known extension, a folder that is there, and nothing
@@ -96,6 +121,10 @@ fn folder(path: &Path) -> PathBuf {
 
 /// All indices in range, all used positions within f32.
 fn sound(mesh: &TriMesh) -> Result<(), String> {
+    let held = |v: u32| mesh.points.get(v as usize).is_some_and(|p| p.as_vec3().is_finite());
+    if mesh.faces.par_iter().all(|f| f.iter().all(|&v| held(v))) {
+        return Ok(());
+    }
     for (i, &v) in mesh.faces.iter().flatten().enumerate() {
         let Some(p) = mesh.points.get(v as usize) else {
             let count = mesh.points.len();
@@ -118,11 +147,15 @@ fn rounded(mesh: &TriMesh, v: u32) -> [f32; 3] {
     mesh.points[v as usize].as_vec3().to_array().map(|x| x + 0.0)
 }
 
-fn encode(target: Target, mesh: &TriMesh, note: &str) -> Result<Vec<u8>, String> {
-    let many = |n: usize, what: &str| match u32::try_from(n) {
+/// A number that every format can count to.
+fn many(n: usize, what: &str) -> Result<u32, String> {
+    match u32::try_from(n) {
         Ok(n) if n <= i32::MAX as u32 => Ok(n),
         _ => Err(format!("{n} {what} are more than the format can count")),
-    };
+    }
+}
+
+fn encode(target: Target, mesh: &TriMesh, note: &str) -> Result<Vec<u8>, String> {
     let (points, faces) = (many(mesh.points.len(), "points")?, many(mesh.faces.len(), "faces")?);
     match target {
         Target::Stl => Ok(stl::encode(mesh, faces, note)),
@@ -134,9 +167,6 @@ fn encode(target: Target, mesh: &TriMesh, note: &str) -> Result<Vec<u8>, String>
 
 /// Reads the bytes again and compares.
 fn same(bytes: &[u8], target: Target, mesh: &TriMesh) -> Result<(), String> {
-    if matches!(target, Target::Stl) && stl::holds(bytes, mesh) {
-        return Ok(());
-    }
     let format = match target {
         Target::Stl => return stl::same(bytes, mesh),
         Target::Obj => Format::Obj,
@@ -173,11 +203,15 @@ fn differs<T: PartialEq + Display>(what: &str, back: T, mesh: T) -> Result<(), S
 }
 
 /// Writes beside the place and renames into it, so that no half file is ever there.
-fn place(path: &Path, parts: &[&[u8]], force: bool) -> Result<(), MeshError> {
+fn place<B: AsRef<[u8]>>(
+    path: &Path,
+    parts: impl Iterator<Item = Result<B, MeshError>>,
+    force: bool,
+) -> Result<(), MeshError> {
     let failed = |cause| MeshError::Io { path: path.into(), doing: "write", cause };
     let mut file = beside(path).map_err(failed)?;
     for part in parts {
-        file.write_all(part).map_err(failed)?;
+        file.write_all(part?.as_ref()).map_err(failed)?;
     }
     let kept = if force { file.persist(path) } else { file.persist_noclobber(path) };
     match kept {

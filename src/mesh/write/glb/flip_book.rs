@@ -92,7 +92,7 @@ impl FlipBook {
         let root = Node { children: Some(self.pages), ..document::metres() };
         let root = self.document.node(root);
         let [head, body] = self.document.finish(vec![root]).map_err(refuse)?;
-        place(&self.path, &[&head, &body], self.force)?;
+        place(&self.path, [&head, &body].into_iter().map(Ok), self.force)?;
         Ok((head.len() + body.len()) as u64)
     }
 }

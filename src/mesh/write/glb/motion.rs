@@ -43,7 +43,7 @@ pub fn write_motion(
     let refuse = |why: String| MeshError::Unfaithful { path: path.into(), why };
     fits(motion).map_err(refuse)?;
     let [head, body] = encode(motion, &plain(note)).map_err(refuse)?;
-    place(path, &[&head, &body], force)?;
+    place(path, [&head, &body].into_iter().map(Ok), force)?;
     Ok((head.len() + body.len()) as u64)
 }
 
