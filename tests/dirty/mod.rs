@@ -70,7 +70,10 @@ fn keep(folder: &Path, d: &Dirty, made: &TriMesh) {
     // as `convert` does, and near the origin, where f32 has digits enough
     let at = made.bounds().centre();
     let mut near = made.clone();
-    near.points.iter_mut().for_each(|p| *p -= at);
+    // judges have lengths of their own below or above which they see nothing; a power of two is exact
+    let size = (20.0 / d.size).log2();
+    let scale = if size.abs() > 10.0 { size.round().exp2() } else { 1.0 };
+    near.points.iter_mut().for_each(|p| *p = (*p - at) * scale);
     snap(&mut near);
     write(&folder.join(format!("{name}.stl")), &near, "", true).unwrap();
 }
