@@ -89,12 +89,63 @@ impl<T: Copy> Bricks<T> {
         }
     }
 
+    /// The cube of `side`³ samples from `lo` on, x fastest, by the rules of [`Bricks::row`].
+    pub fn cube(&self, lo: [i64; 3], side: usize, inside: T, outside: T, out: &mut [T]) {
+        out.fill(outside);
+        let [xs, ys, zs] = [0, 1, 2].map(|a| runs(lo[a], side, i64::from(self.lattice.size[a])));
+        for z in &zs {
+            for y in &ys {
+                for x in &xs {
+                    let samples = match self.brick([x.brick, y.brick, z.brick]) {
+                        Some(Brick::Band(samples)) => Some(samples),
+                        Some(Brick::Inside) => None,
+                        Some(Brick::Outside) | None => continue,
+                    };
+                    for (k, j) in (0..z.len).flat_map(|k| (0..y.len).map(move |j| (k, j))) {
+                        let to = x.to + side * (y.to + j + side * (z.to + k));
+                        let to = &mut out[to..to + x.len];
+                        match samples {
+                            Some(samples) => {
+                                let from = x.from + 8 * (y.from + j) + 64 * (z.from + k);
+                                to.copy_from_slice(&samples[from..from + x.len]);
+                            }
+                            None => to.fill(inside),
+                        }
+                    }
+                }
+            }
+        }
+    }
+
     /// Sample (i, j, k), by the rules of [`Bricks::row`].
     pub fn sample(&self, at: [i64; 3], inside: T, outside: T) -> T {
         let mut one = [outside];
         self.row(at, inside, outside, &mut one);
         one[0]
     }
+}
+
+/// A run of samples along an axis in one brick.
+struct Run {
+    brick: u32,
+    /// Its first sample within the brick, and within the whole run.
+    from: usize,
+    to: usize,
+    len: usize,
+}
+
+/// The `side` samples from `lo` on, as far as they lie in 0..size, brick by brick.
+fn runs(lo: i64, side: usize, size: i64) -> Vec<Run> {
+    let wide = i64::from(BRICK);
+    let mut runs = Vec::with_capacity(3);
+    let (mut at, end) = (lo.max(0), (lo + side as i64).min(size));
+    while at < end {
+        let next = ((at / wide + 1) * wide).min(end);
+        let [from, to, len] = [at % wide, at - lo, next - at].map(|n| n as usize);
+        runs.push(Run { brick: (at / wide) as u32, from, to, len });
+        at = next;
+    }
+    runs
 }
 
 #[cfg(test)]
@@ -136,5 +187,19 @@ mod tests {
         assert_eq!(b.sample([18, 0, 0], -1, 1000), -1);
         assert_eq!(b.sample([19, 0, 0], -1, 1000), 1000);
         assert_eq!(b.sample([8, -1, 0], -1, 1000), 1000);
+    }
+    #[test]
+    fn a_cube_is_made_of_rows() {
+        let b = some();
+        for (lo, side) in [([-2, -1, -3], 24), ([7, 0, 0], 9), ([14, 3, 2], 10), ([0, 0, 0], 9)] {
+            let mut cube = vec![0; side * side * side];
+            b.cube(lo, side, -1, 1000, &mut cube);
+            for (n, got) in cube.chunks_exact(side).enumerate() {
+                let at = [lo[0], lo[1] + (n % side) as i64, lo[2] + (n / side) as i64];
+                let mut row = vec![0; side];
+                b.row(at, -1, 1000, &mut row);
+                assert_eq!(got, row);
+            }
+        }
     }
 }

@@ -21,10 +21,13 @@ impl<const N: usize> Block<N> {
         let lo = first(b).map(|i| i - i64::from(back));
         let fill = bricks.lattice.step as f32;
         let mut samples = vec![fill; N * N * N];
-        for (n, row) in samples.chunks_exact_mut(N).enumerate() {
-            let at = [lo[0], lo[1] + (n % N) as i64, lo[2] + (n / N) as i64];
-            bricks.row(at, -fill, fill, row);
-            put_border_outside(&bricks.lattice, at, row);
+        bricks.cube(lo, N, -fill, fill, &mut samples);
+        let reaches = |a: usize| lo[a] + N as i64 >= i64::from(bricks.lattice.size[a]);
+        if (0..3).any(|a| lo[a] <= 0 || reaches(a)) {
+            for (n, row) in samples.chunks_exact_mut(N).enumerate() {
+                let at = [lo[0], lo[1] + (n % N) as i64, lo[2] + (n / N) as i64];
+                put_border_outside(&bricks.lattice, at, row);
+            }
         }
         let inside = samples.iter().filter(|&&v| v < 0.0).count();
         if inside == 0 || inside == samples.len() { None } else { Some(Self { samples }) }
