@@ -54,9 +54,9 @@ const BRICK_BYTES: f64 = 512.0 * 4.0 + 256.0;
 /// A triangle and its half point.
 const TRIANGLE_BYTES: f64 = 24.0;
 /// What a triangle takes beside that while the mesh is checked, or written and read back.
-const WORK_BYTES: f64 = 95.0;
+const WORK_BYTES: f64 = 60.0;
 /// The same while loose pieces are dropped.
-const SWEPT_BYTES: f64 = 180.0;
+const SWEPT_BYTES: f64 = 150.0;
 /// What a triangle takes while it is drawn: single precision, normals, its place in bands.
 const DRAWN_BYTES: f64 = 50.0;
 /// What a triangle of an input takes while the field of its mesh is made.

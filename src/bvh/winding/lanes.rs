@@ -21,14 +21,14 @@ impl<S: Simd> Vec8<S> {
     /// The points, the last one repeated.
     #[inline(always)]
     fn of(s: S, at: &[DVec3]) -> Self {
-        let mut lanes = [[0.0; LANES]; 3];
+        let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             if let Some(p) = at.get(i).or(at.last()) {
-                (lanes[0][i], lanes[1][i], lanes[2][i]) = (p.x, p.y, p.z);
+                (x[i], y[i], z[i]) = (p.x, p.y, p.z);
             }
         }
-        let [x, y, z] = lanes;
-        Self { x: f64x8::simd_from(s, x), y: f64x8::simd_from(s, y), z: f64x8::simd_from(s, z) }
+        let lanes = |x| f64x8::simd_from(s, x);
+        Self { x: lanes(x), y: lanes(y), z: lanes(z) }
     }
 
     /// A point less each of these.
