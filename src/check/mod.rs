@@ -219,6 +219,9 @@ pub fn without_copies(mut mesh: TriMesh) -> TriMesh {
     mesh
 }
 
+/// Areas that are held at once.
+const AREAS: usize = 1 << 16;
+
 /// What is measured face by face.
 struct Sizes {
     area: f64,
@@ -235,7 +238,10 @@ impl Sizes {
     fn of(mesh: &Welded) -> Self {
         let corners = |f: &[u32; 3]| f.map(|v| mesh.points[v as usize]);
         // Summed in order: the same figure on any number of threads.
-        let areas: Vec<f64> = mesh.faces.par_iter().map(|f| area(corners(f))).collect();
+        let areas = mesh
+            .faces
+            .chunks(AREAS)
+            .flat_map(|faces| faces.par_iter().map(|f| area(corners(f))).collect::<Vec<f64>>());
         let finite = mesh.points.iter().copied().filter(|p| p.is_finite());
         let bounds = Aabb::of(finite);
         let corner = |p: DVec3| {
@@ -243,7 +249,7 @@ impl Sizes {
         };
         let repeats = |f: &&[u32; 3]| f[0] == f[1] || f[1] == f[2] || f[2] == f[0];
         Self {
-            area: areas.iter().sum(),
+            area: areas.sum(),
             bounds: [corner(bounds.min), corner(bounds.max)],
             flat: mesh.faces.iter().filter(|f| repeats(f) || is_flat(corners(f))).count(),
             collapsed: mesh.faces.iter().filter(repeats).count(),

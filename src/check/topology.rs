@@ -88,7 +88,9 @@ pub(super) fn topology(mesh: &Welded) -> Topology {
             faces.join(a as usize / 3, b as usize / 3);
         }
     }
+    drop(halves);
     count_fans(mesh, &mut corners, &mut t);
+    drop(corners);
     (t.labels, t.components) = faces.labels();
     t
 }

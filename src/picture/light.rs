@@ -44,8 +44,8 @@ impl Lights {
     /// For a picture with that many pixels along its longer side.
     pub fn new(scene: &Scene, camera: &Camera, pixels: u32) -> Self {
         let (sky, key) = directions(camera);
-        let fine = Caster::of(scene, pixels as f32);
-        let coarse = Caster::of(scene, pixels as f32 * SKY_DETAIL);
+        let caster = |detail: f32| Caster::of(scene, pixels as f32 * detail);
+        let (fine, coarse) = rayon::join(|| caster(1.0), || caster(SKY_DETAIL));
         let sky = sky.into_par_iter().map(|from| (from, &coarse));
         let key = key.into_par_iter().map(|from| (from, &fine));
         let light = |((toward, color), caster)| Light { color, map: DepthMap::new(caster, toward) };

@@ -68,8 +68,10 @@ pub(super) fn draw(
 ) {
     let (width, height) = (image.width() as usize, image.height() as usize);
     let samples = (width * SAMPLES, height * SAMPLES);
-    let raster = Raster::new(scene, camera, SAMPLES as f32, samples.1, ROWS * SAMPLES);
-    let ground = Ground::new(scene, lights, width.max(height));
+    let (raster, ground) = rayon::join(
+        || Raster::new(scene, camera, SAMPLES as f32, samples.1, ROWS * SAMPLES),
+        || Ground::new(scene, lights, width.max(height)),
+    );
     let painter = Painter { scene, camera, lights, ground, raster, style };
     let bands = image.pixels_mut().par_chunks_mut(width * ROWS).enumerate();
     bands.for_each(|(index, pixels)| {

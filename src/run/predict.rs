@@ -67,6 +67,8 @@ const KEPT_BYTES: f64 = 250.0;
 const OWN_SHARE: f64 = 0.3;
 /// The sampled form of a shape: leaves of 9³ samples, some of them coarse.
 const LEAF_BYTES: f64 = 729.0 * 4.0 * 1.6;
+/// Share of a frame that the heap keeps while the next one is made.
+const LEFT: f64 = 0.35;
 /// The program and its threads, where the system does not tell what they have.
 const PROGRAM_BYTES: f64 = 12e6;
 
@@ -115,7 +117,8 @@ impl Known<'_> {
         let checking = size.triangles * if self.swept { SWEPT_BYTES } else { WORK_BYTES };
         let work = checking.max(self.picture.map_or(0.0, drawing));
         let frame = samples + size.triangles * TRIANGLE_BYTES + work;
-        self.taken + self.held + (frame - self.free).max(self.passing)
+        let left = if self.frames > 1 { LEFT * frame } else { 0.0 };
+        self.taken + self.held + (frame + left - self.free).max(self.passing)
     }
 }
 
