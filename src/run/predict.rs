@@ -60,7 +60,7 @@ const SWEPT_BYTES: f64 = 150.0;
 /// What a triangle takes while it is drawn: single precision, normals, its place in bands.
 const DRAWN_BYTES: f64 = 50.0;
 /// What a triangle of an input takes while the field of its mesh is made.
-const FIELD_BYTES: f64 = 900.0;
+const FIELD_BYTES: f64 = 550.0;
 /// What a triangle of a surface that moves takes from frame to frame.
 const KEPT_BYTES: f64 = 250.0;
 /// Triangles of a surface's own mesh for one of the result, roughly.
@@ -116,8 +116,9 @@ impl Known<'_> {
         let drawing = |p| working_memory(p) + size.triangles * DRAWN_BYTES;
         let checking = size.triangles * if self.swept { SWEPT_BYTES } else { WORK_BYTES };
         let work = checking.max(self.picture.map_or(0.0, drawing));
-        let frame = samples + size.triangles * TRIANGLE_BYTES + work;
-        let left = if self.frames > 1 { LEFT * frame } else { 0.0 };
+        let mesh = samples + size.triangles * TRIANGLE_BYTES;
+        let frame = mesh + work;
+        let left = if self.frames > 1 { LEFT * (mesh + checking) } else { 0.0 };
         self.taken + self.held + (frame + left - self.free).max(self.passing)
     }
 }
