@@ -121,9 +121,9 @@ pub(super) struct Lanes([[f64; LANES]; NUMBERS]);
 /// A point in every lane, or eight points.
 #[derive(Clone, Copy)]
 pub(super) struct Points<S: Simd> {
-    x: f64x8<S>,
-    y: f64x8<S>,
-    z: f64x8<S>,
+    pub(super) x: f64x8<S>,
+    pub(super) y: f64x8<S>,
+    pub(super) z: f64x8<S>,
 }
 
 #[inline(always)]

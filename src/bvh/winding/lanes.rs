@@ -4,7 +4,7 @@
 use super::Winding;
 use super::dipole::Dipole;
 use crate::bvh::Node;
-use crate::bvh::triangle::LANES;
+use crate::bvh::triangle::{LANES, Points};
 use fearless_simd::{Simd, SimdMask, f64x8, mask64x8, prelude::*};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -21,14 +21,8 @@ impl<S: Simd> Vec8<S> {
     /// The points, the last one repeated.
     #[inline(always)]
     fn of(s: S, at: &[DVec3]) -> Self {
-        let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for i in 0..LANES {
-            if let Some(p) = at.get(i).or(at.last()) {
-                (x[i], y[i], z[i]) = (p.x, p.y, p.z);
-            }
-        }
-        let lanes = |x| f64x8::simd_from(s, x);
-        Self { x: lanes(x), y: lanes(y), z: lanes(z) }
+        let Points { x, y, z } = Points::of(s, at);
+        Self { x, y, z }
     }
 
     /// A point less each of these.
