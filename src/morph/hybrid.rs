@@ -79,48 +79,53 @@ impl Hybrid {
         }
     }
 
-    /// Whether a shape has no weight in any feature, and the morphing function so never reads it.
-    fn idle(&self, j: usize) -> bool {
-        let none = || match &self.features[..] {
-            [] => self.lam[j] == 0.0,
-            all => all.iter().all(|f| f.lam[j] == 0.0),
-        };
-        !matches!(self.mix, Mix::SpaceTime(_)) && none()
+    /// Whether the morphing function reads shapes that weigh nothing.
+    fn reads_all(&self) -> bool {
+        matches!(self.mix, Mix::SpaceTime(_))
     }
 
     /// Values and weights of the shapes under the blended maps: y_j = Σ w_i T_ij(x), g_j = f_j(y_j).
     pub fn look_up(&self, at: &[DVec3], out: &mut Looked) {
-        self.look_up_some(at, out, |_| true);
+        self.weigh(at, true, out);
+        out.lam = self.shares(at.len(), &out.sharp);
+        self.values_of(at, out, |_, _| true);
     }
 
-    /// [`Hybrid::look_up`] of the shapes that are wanted; the values of the others mean nothing.
-    fn look_up_some(&self, at: &[DVec3], out: &mut Looked, wanted: impl Fn(usize) -> bool) {
+    /// Values alone of the shapes that are wanted; those of the others are zero.
+    pub fn look_up_some(&self, at: &[DVec3], wanted: impl Fn(usize) -> bool) -> Vec<f64> {
+        let mut out = Looked::default();
+        self.weigh(at, false, &mut out);
+        self.values_of(at, &mut out, |j, _| wanted(j));
+        out.g
+    }
+
+    /// Weights of the k shapes at some points from the sharp weights of the features there.
+    fn shares(&self, points: usize, sharp: &[f64]) -> Vec<f64> {
         let (k, n) = self.counts();
-        out.g.resize(at.len() * k, 0.0);
-        out.lam.resize(at.len() * k, 0.0);
-        if n > 0 {
-            self.weigh(at, true, out);
+        if n == 0 {
+            return self.lam.repeat(points);
         }
-        let mut y = vec![DVec3::ZERO; at.len()];
-        let mut g = vec![0.0; at.len()];
-        for (r, row) in out.lam.chunks_exact_mut(k).enumerate() {
-            if n == 0 {
-                row.copy_from_slice(&self.lam);
-            } else {
-                let w = &out.sharp[r * n..(r + 1) * n];
-                for (j, l) in row.iter_mut().enumerate() {
-                    *l = w.iter().zip(&self.features).map(|(w, f)| w * f.lam[j]).sum();
-                }
-            }
+        let mut lam = Vec::with_capacity(points * k);
+        for w in sharp.chunks_exact(n) {
+            let share = |j| w.iter().zip(&self.features).map(|(w, f)| w * f.lam[j]).sum::<f64>();
+            lam.extend((0..k).map(share));
         }
-        for (j, shape) in self.shapes.iter().enumerate().filter(|&(j, _)| wanted(j)) {
-            for (r, (y, &p)) in y.iter_mut().zip(at).enumerate() {
-                *y = if n == 0 { p } else { self.blended(j, p, &out.w[r * n..(r + 1) * n]) };
-            }
-            shape.values(&y, &mut g);
-            for (r, &g) in g.iter().enumerate() {
-                out.g[r * k + j] = g;
-            }
+        lam
+    }
+
+    /// Values of the shapes that are wanted (by shape and row) under the blended maps.
+    fn values_of(&self, at: &[DVec3], out: &mut Looked, wanted: impl Fn(usize, usize) -> bool) {
+        let (k, n) = self.counts();
+        let Looked { g, w, .. } = out;
+        g.clear();
+        g.resize(at.len() * k, 0.0);
+        for (j, shape) in self.shapes.iter().enumerate() {
+            let rows: Vec<usize> = (0..at.len()).filter(|&r| wanted(j, r)).collect();
+            let place = |r: usize| match n {
+                0 => at[r],
+                _ => self.blended(j, at[r], &w[r * n..(r + 1) * n]),
+            };
+            values_at(shape, &rows, place, |r, v| g[r * k + j] = v);
         }
     }
 
@@ -164,7 +169,10 @@ impl Hybrid {
     fn values_by_maps(&self, at: &[DVec3], out: &mut [f64]) {
         let (k, n) = self.counts();
         let mut l = Looked::default();
-        self.look_up_some(at, &mut l, |j| !self.idle(j));
+        self.weigh(at, true, &mut l);
+        let lam = self.shares(at.len(), &l.sharp);
+        let all = self.reads_all();
+        self.values_of(at, &mut l, |j, r| all || lam[r * k + j] != 0.0);
         for (r, f) in out.iter_mut().enumerate() {
             let row = r * k..(r + 1) * k;
             let feature = r * n..(r + 1) * n;
@@ -174,7 +182,7 @@ impl Hybrid {
                 (&[][..], &[][..])
             };
             self.thin(&mut l.g[row.clone()], w);
-            *f = self.mix.value(&l.g[row.clone()], &l.lam[row], &self.local(w));
+            *f = self.mix.value(&l.g[row.clone()], &lam[row], &self.local(w));
             for (i, p) in self.features.iter().enumerate() {
                 *f -= l.w[r * n + i] * offset(p.offset, d[i]);
             }
@@ -187,18 +195,15 @@ impl Hybrid {
         let mut l = Looked::default();
         self.weigh(at, false, &mut l);
         out.fill(0.0);
-        let mut y = vec![DVec3::ZERO; at.len()];
-        let mut one = vec![0.0; at.len()];
+        let all = self.reads_all();
         let mut g = vec![0.0; at.len() * k];
         for (i, feature) in self.features.iter().enumerate() {
+            let rows: Vec<usize> = (0..at.len()).filter(|&r| l.w[r * n + i] > 0.0).collect();
             for (j, shape) in self.shapes.iter().enumerate() {
-                for (y, &p) in y.iter_mut().zip(at) {
-                    *y = feature.maps[j].pull(p);
-                }
-                shape.values(&y, &mut one);
-                let thin = feature.thin.get(j).copied().unwrap_or(0.0);
-                for (r, &v) in one.iter().enumerate() {
-                    g[r * k + j] = v + thin;
+                if all || feature.lam[j] != 0.0 {
+                    let thin = feature.thin.get(j).copied().unwrap_or(0.0);
+                    let place = |r: usize| feature.maps[j].pull(at[r]);
+                    values_at(shape, &rows, place, |r, v| g[r * k + j] = v + thin);
                 }
             }
             for (r, f) in out.iter_mut().enumerate() {
@@ -233,12 +238,13 @@ impl Hybrid {
         let mut lam = Vec::with_capacity(k);
         for j in 0..k {
             let thin = convex(&|f| f.thin.get(j).copied().unwrap_or(0.0), &mut order);
-            g.push(if self.idle(j) {
-                Interval::ALL
-            } else {
+            let share = convex(&|f| f.lam[j], &mut order).clamp(0.0, 1.0);
+            g.push(if share.hi > 0.0 || self.reads_all() {
                 self.shapes[j].bound(&self.image(j, b, &w, &mut order)) + thin
+            } else {
+                Interval::ALL
             });
-            lam.push(convex(&|f| f.lam[j], &mut order).clamp(0.0, 1.0));
+            lam.push(share);
         }
         let local = LocalRange {
             reach: convex(&|f| f.local.reach, &mut order),
@@ -256,19 +262,17 @@ impl Hybrid {
     fn image(&self, j: usize, b: &Aabb, w: &[Interval], order: &mut Vec<usize>) -> Aabb {
         let main = (0..w.len()).max_by(|&a, &c| w[a].hi.total_cmp(&w[c].hi)).unwrap_or(0);
         let own = self.features[main].maps[j].image(b);
-        let away: Vec<Aabb> = self
-            .features
-            .iter()
-            .map(|f| f.maps[j].difference(&self.features[main].maps[j], b))
+        let none = Aabb::new(DVec3::ZERO, DVec3::ZERO);
+        let away: Vec<Aabb> = (0..w.len())
+            .map(|i| match &self.features[i] {
+                f if i != main && w[i].hi > 0.0 => {
+                    f.maps[j].difference(&self.features[main].maps[j], b)
+                }
+                _ => none,
+            })
             .collect();
         let axis = |c: usize, order: &mut Vec<usize>| {
-            let x: Vec<_> = away
-                .iter()
-                .enumerate()
-                .map(|(i, a)| {
-                    if i == main { Interval::point(0.0) } else { Interval::new(a.min[c], a.max[c]) }
-                })
-                .collect();
+            let x: Vec<_> = away.iter().map(|a| Interval::new(a.min[c], a.max[c])).collect();
             combine(w, &x, order)
         };
         let shift = [axis(0, order), axis(1, order), axis(2, order)];
@@ -301,6 +305,19 @@ impl Hybrid {
             .collect();
         combine(&w, &values, &mut order)
     }
+}
+
+/// Values of a shape for some rows, each at its place.
+fn values_at(
+    shape: &Shared,
+    rows: &[usize],
+    place: impl Fn(usize) -> DVec3,
+    mut put: impl FnMut(usize, f64),
+) {
+    let at: Vec<DVec3> = rows.iter().map(|&r| place(r)).collect();
+    let mut values = vec![0.0; at.len()];
+    shape.values(&at, &mut values);
+    rows.iter().zip(values).for_each(|(&r, v)| put(r, v));
 }
 
 /// Offset o_i of eq. 6 as METHODS corrects it: d inside the feature, fading to nothing at the

@@ -284,7 +284,7 @@ pub(super) fn locals(
         let site = Site { g: &looked.g, sizes: &[], step: None, cell };
         return Ok(vec![measured(&site, &h.lam, inner)]);
     }
-    let all = rows(h, job)?;
+    let all = rows(h, |f, j| f.lam[j] > 0.0, job)?;
     let each = h.features.iter().zip(inners).zip(&all);
     let one = |((f, &inner), rows): ((&Placed, &Inner), &Vec<f64>)| {
         let sizes = sizes(f);
@@ -294,11 +294,21 @@ pub(super) fn locals(
     Ok(each.map(one).collect())
 }
 
-/// Values of the shapes at the samples of each feature, a row a sample.
-pub(super) fn rows(h: &Hybrid, job: &dyn Job) -> Result<Vec<Vec<f64>>, Cancelled> {
+/// Values of the shapes that are wanted in a feature at its samples, a row a sample; those of the
+/// others are zero.
+pub(super) fn rows(
+    h: &Hybrid,
+    wanted: impl Fn(&Placed, usize) -> bool + Sync,
+    job: &dyn Job,
+) -> Result<Vec<Vec<f64>>, Cancelled> {
+    let some = |f: &Placed, at: &[DVec3]| {
+        job::check(job)?;
+        Ok(h.look_up_some(at, |j| wanted(f, j)))
+    };
     let one = |f: &Placed| {
         let at: Vec<DVec3> = cube(FEATURE_SIDE).map(|q| f.element.to_world(q)).collect();
-        Ok(look(h, &at, job)?.g)
+        let parts = at.par_chunks(512).map(|at| some(f, at)).collect::<Result<Vec<_>, _>>()?;
+        Ok(parts.concat())
     };
     h.features.iter().map(one).collect()
 }

@@ -82,7 +82,7 @@ impl Stage {
                 Ok((at, g, sharp))
             })
             .collect::<Result<_, Cancelled>>()?;
-        let rows = measure::rows(&hybrid, job)?;
+        let rows = measure::rows(&hybrid, |_, _| true, job)?;
         let heft = |(f, g): (&Placed, &Vec<f64>)| {
             let inside = g.iter().filter(|v| **v < 0.0).count();
             inside as f64 * measure::step(f).element_product()
