@@ -13,8 +13,7 @@ use obvhs::bvh2::{Bvh2, builder::build_bvh2, node::Bvh2Node};
 use rayon::prelude::*;
 
 /// Boxes nearly the same of which there may be so many without being a crowd. Fewer would bundle what
-/// real meshes have (both triangles of a flat side, fans at a pole); 40 000 boxes in crowds just below
-/// it are a matter of milliseconds.
+/// real meshes have: both triangles of a flat side, fans at a pole.
 const CROWD: usize = 32;
 /// Corners are nearly the same in steps of this part of the box's size: far above what rounding parts
 /// copies by, far below what a tree could part.
