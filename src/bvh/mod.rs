@@ -7,6 +7,7 @@
 
 mod batch;
 mod contact;
+mod hierarchy;
 mod nearest;
 mod ray;
 mod rim;
@@ -18,6 +19,7 @@ mod winding;
 
 pub use batch::Hit;
 pub use contact::{apart, gap};
+pub use hierarchy::hierarchy;
 pub use nearest::Nearest;
 pub use ray::Exit;
 pub use rim::Rim;
@@ -25,7 +27,7 @@ pub use winding::Winding;
 
 use crate::num::Aabb;
 use glam::DVec3;
-use obvhs::{BvhBuildParams, bvh2::builder::build_bvh2_from_tris, triangle::Triangle};
+use obvhs::{BvhBuildParams, triangle::Triangle};
 use rayon::prelude::*;
 use triangle::Tri;
 use wide::Wide;
@@ -154,5 +156,5 @@ fn shape(triangles: &[[DVec3; 3]], bounds: &Aabb) -> obvhs::bvh2::Bvh2 {
         .iter()
         .map(|t| Triangle { v0: unit(t[0]), v1: unit(t[1]), v2: unit(t[2]) })
         .collect();
-    build_bvh2_from_tris(&small, BvhBuildParams::medium_build(), &mut Default::default())
+    hierarchy(&small, BvhBuildParams::medium_build())
 }

@@ -3,9 +3,10 @@
 
 use super::triangles::{Triangle, meet};
 use super::weld::Welded;
+use crate::bvh::hierarchy;
 use crate::num::Aabb;
 use glam::{DVec3, Vec3A};
-use obvhs::{BvhBuildParams, aabb::Aabb as Box32, bvh2::builder::build_bvh2};
+use obvhs::{BvhBuildParams, aabb::Aabb as Box32};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -56,7 +57,7 @@ fn meetings(triangles: &[Triangle]) -> Vec<bool> {
     if boxes.is_empty() {
         return Vec::new();
     }
-    let tree = build_bvh2(&boxes, BvhBuildParams::fast_build(), &mut Default::default());
+    let tree = hierarchy(&boxes, BvhBuildParams::fast_build());
     // Who meets something has nothing more to find out, and leaves off: many copies of a mesh that
     // differ by rounding have far more pairs than can be looked at.
     let left_off: Vec<AtomicBool> = triangles.iter().map(|_| AtomicBool::new(false)).collect();

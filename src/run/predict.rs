@@ -6,9 +6,10 @@ use crate::iso::{Mesher, extract};
 use crate::job::{Cancelled, Job};
 use crate::memory::{peak_memory, resident_memory};
 use crate::morph::MorphError;
+use crate::num::Aabb;
 use crate::picture::working_memory;
 use crate::recipe::MorphEntry;
-use crate::scene::{Draft, Scene};
+use crate::scene::{Draft, Held, Scene, Tessellated};
 use serde::Serialize;
 
 /// Bricks, triangles and bytes of the largest frame, and of the run's memory at its peak.
@@ -54,15 +55,20 @@ const BRICK_BYTES: f64 = 512.0 * 4.0 + 256.0;
 /// A triangle and its half point.
 const TRIANGLE_BYTES: f64 = 24.0;
 /// What a triangle takes beside that while the mesh is checked, or written and read back.
-const WORK_BYTES: f64 = 60.0;
+const WORK_BYTES: f64 = 130.0;
 /// The same while loose pieces are dropped.
 const SWEPT_BYTES: f64 = 150.0;
 /// What a triangle takes while it is drawn: single precision, normals, its place in bands.
 const DRAWN_BYTES: f64 = 50.0;
 /// What a triangle of an input takes while the field of its mesh is made.
 const FIELD_BYTES: f64 = 550.0;
-/// What a triangle of a surface that moves takes from frame to frame.
-const KEPT_BYTES: f64 = 250.0;
+/// A triangle in the field of a surface that is closed: in two trees, of the faces and of what tells
+/// inside from outside. Measured on tori of 20 000 to 720 000 triangles: 650 to 720.
+const SOLID_BYTES: f64 = 650.0;
+/// The same in the field of a sheet: one tree. Measured: 460 to 620.
+const SHEET_BYTES: f64 = 460.0;
+/// What a triangle takes beside that while such a field is made. Measured: 270 to 350.
+const MAKING_BYTES: f64 = 300.0;
 /// Triangles of a surface's own mesh for one of the result, roughly.
 const OWN_SHARE: f64 = 0.3;
 /// The sampled form of a shape: leaves of 9³ samples, some of them coarse.
@@ -82,6 +88,8 @@ struct Known<'a> {
     held: f64,
     /// Taken while shapes and what methods need are made, and given back after.
     passing: f64,
+    /// All that there is while shapes are made whose exact fields do not stay.
+    making: f64,
     /// Free in what is taken, for frames to use again.
     free: f64,
     /// Whether loose pieces are dropped.
@@ -119,7 +127,8 @@ impl Known<'_> {
         let mesh = samples + size.triangles * TRIANGLE_BYTES;
         let frame = mesh + work;
         let left = if self.frames > 1 { LEFT * (mesh + checking) } else { 0.0 };
-        self.taken + self.held + (frame + left - self.free).max(self.passing)
+        let later = (frame + left - self.free).max(self.passing);
+        self.making.max(self.taken + self.held + later)
     }
 }
 
@@ -140,6 +149,7 @@ pub fn predict(draft: &Draft, picture: Option<[u32; 2]>) -> Prediction {
         held: sampled_bytes(draft, h),
         passing: (surfaces.max(draft.largest_mesh() as f64) * FIELD_BYTES)
             .max(draft.method_bytes()),
+        making: 0.0,
         free: 0.0,
         swept: !draft.recipe().features.is_empty(),
         picture,
@@ -155,6 +165,7 @@ pub fn predict_one(area: f64, lattice: &Lattice) -> Prediction {
         taken: taken(),
         held: 0.0,
         passing: 0.0,
+        making: 0.0,
         free: 0.0,
         swept: true,
         picture: None,
@@ -179,9 +190,9 @@ fn size(area: f64, h: f64) -> Size {
 
 /// The sampled forms of all shapes with cells of `h` mm.
 fn sampled_bytes(draft: &Draft, h: f64) -> f64 {
-    let blocks = |b: &crate::num::Aabb| (b.size() / (h * 8.0)).ceil().element_product();
-    let tables: f64 = draft.boxes().iter().map(|b| blocks(b) * 4.0).sum();
-    draft.areas().iter().map(|&a| bricks(a, h) * LEAF_BYTES).sum::<f64>() + tables
+    let blocks = |b: &Aabb| (b.size() / (h * 8.0)).ceil().element_product();
+    let bytes = |(box_, area): &(Aabb, f64)| bricks(*area, h) * LEAF_BYTES + blocks(box_) * 4.0;
+    draft.sampled(h).iter().map(bytes).sum()
 }
 
 /// How many times larger cells a scene may have that predicts one of these cells: at most 4, and
@@ -209,8 +220,10 @@ pub struct Probe<'a> {
 pub struct Growth {
     /// Held beside each frame: sampled forms, and what shapes that move keep.
     held: f64,
-    /// While a shape, or what a method needs, is made.
+    /// While a shape whose field stays, or what a method needs, is made.
     passing: f64,
+    /// All that there is while a shape is made whose exact field does not stay.
+    making: f64,
     /// What the process had before any field was made, and the sampled forms of the coarse scene.
     before: f64,
 }
@@ -222,11 +235,39 @@ impl Growth {
         let coarse = sampled_bytes(draft, h * coarser);
         let before = taken() + coarse;
         let sampled = sampled_bytes(draft, h) - coarse;
-        let (triangles, moves) = draft.tessellated();
-        let kept = if moves { triangles as f64 * KEPT_BYTES } else { 0.0 };
-        let passing = (triangles as f64 * FIELD_BYTES).max(draft.method_bytes());
-        Self { held: sampled + kept, passing, before }
+        let fine = draft.tessellated(h);
+        let first = held(&fine);
+        let kept =
+            first - if coarser > 1.0 { held(&draft.tessellated(h * coarser)) } else { first };
+        let (stays, goes) = making(&fine);
+        let passing = stays.max(draft.method_bytes());
+        Self { held: sampled + kept, passing, making: before - coarse + goes, before }
     }
+}
+
+/// Bytes of a surface's field, and of all its triangles while it is made.
+fn field_bytes(s: &Tessellated) -> f64 {
+    s.triangles as f64 * if s.sheet { SHEET_BYTES } else { SOLID_BYTES }
+}
+
+/// The fields of surfaces that are there at once: all the first ones, and one that is of the frame.
+fn held(surfaces: &[Tessellated]) -> f64 {
+    let of = |which: [Held; 2]| {
+        surfaces.iter().filter(move |s| which.contains(&s.held)).map(field_bytes)
+    };
+    let first: f64 = of([Held::First, Held::FirstAndLast]).sum();
+    first + of([Held::Last, Held::FirstAndLast]).fold(0.0, f64::max)
+}
+
+/// What is taken while the largest field is made: beyond what is held, of those that stay; of those that
+/// do not, beyond the program: they are made first.
+fn making(surfaces: &[Tessellated]) -> (f64, f64) {
+    let most = |stays: bool| {
+        let of = surfaces.iter().filter(|s| (s.held != Held::Never) == stays);
+        let own = |s: &Tessellated| if stays { 0.0 } else { field_bytes(s) };
+        of.map(|s| own(s) + s.triangles as f64 * MAKING_BYTES).fold(0.0, f64::max)
+    };
+    (most(true), most(false))
 }
 
 impl Probe<'_> {
@@ -237,14 +278,15 @@ impl Probe<'_> {
     /// Cancelled.
     pub fn predict(&self, lattice: &Lattice, job: &dyn Job) -> Result<Prediction, Cancelled> {
         let (before, now) = (peak_memory().map(|b| b as f64), taken());
-        let most = self.largest(job)?;
+        let (most, with_fields) = self.largest(job)?;
         let known = Known {
             frames: self.first.frames,
             lattice,
             // with what shapes that move keep from time to time
-            taken: taken().max(now),
+            taken: with_fields.max(now),
             held: self.growth.held,
             passing: before.map_or(0.0, |peak| peak - now).max(self.growth.passing),
+            making: self.growth.making,
             // fields leave holes, which pictures and meshes fill by about a half
             free: (now - self.growth.before).max(0.0) / 2.0,
             swept: self.coarse.variants.iter().any(|v| v.crumbs > 0.0),
@@ -253,9 +295,10 @@ impl Probe<'_> {
         Ok(known.prediction(most))
     }
 
-    fn largest(&self, job: &dyn Job) -> Result<Size, Cancelled> {
+    /// And what the process has while it holds the fields of a variant.
+    fn largest(&self, job: &dyn Job) -> Result<(Size, f64), Cancelled> {
         let grow = self.coarser * self.coarser;
-        let mut most = Size::default();
+        let (mut most, mut with_fields) = (Size::default(), 0.0f64);
         for v in &self.coarse.variants {
             for t in some(&v.times) {
                 let morph = match v.morph(t, job) {
@@ -270,8 +313,11 @@ impl Probe<'_> {
                 most.active_bricks = most.active_bricks.max(bricks * grow);
                 most.triangles = most.triangles.max(mesh.faces.len() as f64 * grow);
             }
+            with_fields = with_fields.max(taken());
+            // as the run does
+            v.forget();
         }
-        Ok(most)
+        Ok((most, with_fields))
     }
 }
 

@@ -5,9 +5,9 @@ use super::body::Body;
 use super::live::LiveShape;
 use super::live::{self, Exact, Placed, Stop, Want};
 use super::variant::{Parts, Variant, asked};
-use super::{Scene, SceneError, mesh_element, plan, scheme};
+use super::{Scene, SceneError, mesh_element, pair, plan, scheme};
 use crate::element::Element;
-use crate::grid::Lattice;
+use crate::grid::{BRICK, Lattice};
 use crate::job::{self, Job};
 use crate::morph::MorphError;
 use crate::num::Aabb;
@@ -111,27 +111,61 @@ impl Draft {
         surfaces.map(|p| p.area).fold(0.0, f64::max)
     }
 
-    /// Triangles that the largest surface among the shapes is made from, once it is, and whether
-    /// some shape moves: it keeps them from frame to frame.
-    pub fn tessellated(&self) -> (usize, bool) {
-        let surfaces = self.placed.iter().filter_map(|p| match &p.body {
-            Body::Surface(s) => Some((s, self.uses[&p.name].times.first().copied())),
-            _ => None,
+    /// The surfaces among the shapes, and those between two of them, as cells of `step` mm ask.
+    pub fn tessellated(&self, step: f64) -> Vec<Tessellated> {
+        let shapes = self.placed.iter().filter_map(|p| {
+            let Body::Surface(s) = &p.body else { return None };
+            let purpose = &self.uses[&p.name];
+            let first = purpose.times.first().copied().unwrap_or(0.5);
+            let held = match (s.moves(), purpose.alone) {
+                // the first for the whole run, and that of the frame
+                (true, _) => Held::FirstAndLast,
+                (false, true) => Held::First,
+                (false, false) => Held::Never,
+            };
+            Some(Tessellated {
+                triangles: s.triangles(first, step),
+                sheet: s.sheet().is_some(),
+                held,
+            })
         });
-        let counted = surfaces.map(|(s, t)| (s.triangles(t.unwrap_or(0.5), self.step), s.moves()));
-        let between = |v: &(String, MorphEntry)| v.1.method.is_some_and(|m| m.surface().is_some());
-        let pair = self.recipe.variants().iter().any(between);
-        counted.fold((0, pair), |(n, moves), (m, also)| (n.max(m), moves || also))
+        let pairs = self.recipe.variants().into_iter().filter_map(|(at, entry)| {
+            let method = entry.method?.surface()?;
+            let names = plan::shape_names(&entry, &self.recipe, &at).ok()?;
+            let [a, b] = names.as_slice() else { return None };
+            let placed = |n: &String| self.placed.iter().find(|p| p.name == *n);
+            let (Body::Surface(from), Body::Surface(to)) = (&placed(a)?.body, &placed(b)?.body)
+            else {
+                return None;
+            };
+            let entries = [a, b].map(|n| &self.recipe.shapes[n]);
+            let (s, _) = pair::between([from, to], entries, method, &self.beside, &at).ok()?;
+            let times = asked(&entry);
+            let middle = times.get(times.len() / 2).copied().unwrap_or(0.5);
+            let sheet = s.sheet().is_some();
+            Some(Tessellated { triangles: s.triangles(middle, step), sheet, held: Held::Last })
+        });
+        shapes.chain(pairs).collect()
+    }
+
+    /// The box and the area (mm²) of each shape that has a sampled form in cells of `step` mm. Both sides
+    /// of a sheet thinner than a brick lie in the same bricks.
+    pub fn sampled(&self, step: f64) -> Vec<(Aabb, f64)> {
+        let sampled = self.placed.iter().filter(|p| {
+            let purpose = &self.uses[&p.name];
+            let moves = matches!(&p.body, Body::Surface(s) if s.moves());
+            purpose.morphs || !(purpose.alone || moves)
+        });
+        let thin = |p: &Placed| match &p.body {
+            Body::Surface(s) => s.sheet().is_some_and(|mm| mm < f64::from(BRICK) * step),
+            _ => false,
+        };
+        sampled.map(|p| (p.bounds, if thin(p) { p.area / 2.0 } else { p.area })).collect()
     }
 
     /// The lattice that results are sampled on, as far as it is known without the fields.
     pub fn lattice(&self) -> Lattice {
         Lattice::covering(&self.domain(), self.step)
-    }
-
-    /// The boxes of the shapes, mm.
-    pub fn boxes(&self) -> Vec<Aabb> {
-        self.placed.iter().map(|p| p.bounds).collect()
     }
 
     /// The recipe.
@@ -255,6 +289,30 @@ fn searches(
         }
     }
     Ok(all)
+}
+
+/// The triangles that a surface is made solid from.
+#[derive(Clone, Copy, Debug)]
+pub struct Tessellated {
+    /// How many.
+    pub triangles: usize,
+    /// Whether they are a sheet with a thickness.
+    pub sheet: bool,
+    /// Whose fields are there while a frame is made.
+    pub held: Held,
+}
+
+/// For how long a surface's exact field stays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// Until its sampled form is made.
+    Never,
+    /// As long as the run.
+    First,
+    /// For its frame.
+    Last,
+    /// That of the first time as long as the run, and one for each frame.
+    FirstAndLast,
 }
 
 /// What a shape is for.

@@ -280,6 +280,12 @@ impl Skinned {
         })
     }
 
+    /// Whether it is made solid as a sheet of some thickness, mm.
+    pub fn sheet(&self) -> Option<f64> {
+        let sheet = self.outlines.iter().any(|(_, o)| o.room == Room::Round);
+        self.how.skin.thickness.filter(|_| sheet)
+    }
+
     /// Triangles that the solid at `t` is made from for cells of `step` mm.
     pub fn triangles(&self, t: f64, step: f64) -> usize {
         self.mesh(t, self.how.tolerance(step)).map_or(0, |m| m.faces.len())

@@ -4,7 +4,7 @@ use crate::util::{Folder, Random, block};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 fn folder() -> Folder {
     let folder = Folder::new();
@@ -13,7 +13,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// Writes meshes, pictures, an animation, a recipe and a report.
+/// Writes meshes, pictures and a report.
 const MANY: [&str; 16] = [
     "morph",
     "low.obj",
@@ -21,7 +21,7 @@ const MANY: [&str; 16] = [
     "--method",
     "linear",
     "-t",
-    "0:1:0.1",
+    "0:1:0.5",
     "-o",
     "h-{t}.stl",
     "--picture",
@@ -53,8 +53,13 @@ fn whole(path: &Path) -> bool {
 
 /// What is not whole, and no hidden file of a run that may still be cleared away.
 fn halves(folder: &Folder) -> Vec<String> {
-    let names = folder.names().into_iter().filter(|n| !n.starts_with(".fieldgraft-"));
-    names.filter(|n| !whole(&folder.join(n))).collect()
+    let shown = folder.names().into_iter().filter(|n| !n.starts_with(".fieldgraft-"));
+    shown.filter(|n| !whole(&folder.join(n))).collect()
+}
+
+/// Hidden files of runs.
+fn hidden(folder: &Folder) -> Vec<String> {
+    folder.names().into_iter().filter(|n| n.starts_with(".fieldgraft-")).collect()
 }
 
 /// Waits for a moment at which a file is being written: a hidden one is there. Whether there was one
@@ -62,51 +67,53 @@ fn halves(folder: &Folder) -> Vec<String> {
 #[cfg(unix)]
 fn writing(folder: &Folder, child: &mut std::process::Child) -> bool {
     while child.try_wait().unwrap().is_none() {
-        if folder.names().iter().any(|n| n.starts_with(".fieldgraft-")) {
+        if !hidden(folder).is_empty() {
             return true;
         }
     }
     false
 }
 
-/// Every other kill is aimed at the writing of a file; what an earlier kill left is taken away for
-/// it, and for the others it stays. `FIELDGRAFT_KILLS=200` kills as often.
+/// Kills are spread over the length of a run that nobody disturbs. Every other one is aimed at the
+/// writing of a file; what an earlier kill left is taken away for it, and for the others it stays.
+/// `FIELDGRAFT_KILLS=200` kills as often.
 #[cfg(unix)]
 #[test]
 fn a_killed_run_leaves_no_half_file_and_the_next_clears_up() {
     let kills = std::env::var("FIELDGRAFT_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(6);
     let folder = folder();
+    let start = Instant::now();
+    folder.run(&MANY).ends(0);
+    let length = start.elapsed();
     let mut random = Random::new(6);
-    let (mut hidden, mut aimed) = (0, 0);
+    let (mut left, mut cut, mut aimed) = (0, 0, 0);
     for nth in 0..kills {
         if nth % 2 == 1 {
-            let names = folder.names().into_iter().filter(|n| n.starts_with(".fieldgraft-"));
-            names.for_each(|n| fs::remove_file(folder.join(&n)).unwrap());
+            hidden(&folder).iter().for_each(|n| fs::remove_file(folder.join(n)).unwrap());
         }
         let mut child =
             folder.command(&MANY).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        if nth % 2 == 0 {
-            std::thread::sleep(Duration::from_millis(random.below(1500) as u64));
-        } else {
-            // some write first and are caught later: of eleven meshes and pictures any
-            std::thread::sleep(Duration::from_millis(random.below(600) as u64));
+        std::thread::sleep(length.mul_f64(random.share()));
+        if nth % 2 == 1 {
             aimed += usize::from(writing(&folder, &mut child));
         }
         // on Unix this is kill -9; the run may have ended already
         let _ = child.kill();
-        child.wait().unwrap();
+        cut += usize::from(!child.wait().unwrap().success());
         assert_eq!(halves(&folder), Vec::<String>::new());
-        hidden += folder.names().iter().filter(|n| n.starts_with(".fieldgraft-")).count();
+        left += hidden(&folder).len();
     }
-    println!("{kills} kills, {aimed} while a file was written, left {hidden} hidden files");
+    println!(
+        "{kills} kills over {length:.2?}, {cut} before the end, {aimed} while a file was written, \
+         left {left} hidden files"
+    );
     folder.put(".fieldgraft-4000000000-abc.part", "half");
     folder.run(&MANY).ends(0);
-    let left: Vec<String> = folder.names().into_iter().filter(|n| n.starts_with('.')).collect();
     if cfg!(target_os = "linux") {
-        assert_eq!(left, Vec::<String>::new());
+        assert_eq!(hidden(&folder), Vec::<String>::new());
     }
     assert_eq!(halves(&folder), Vec::<String>::new());
-    assert_eq!(folder.names().iter().filter(|n| n.ends_with(".stl")).count(), 11);
+    assert_eq!(folder.names().iter().filter(|n| n.ends_with(".stl")).count(), 3);
 }
 
 #[cfg(unix)]

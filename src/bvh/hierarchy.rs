@@ -1,0 +1,156 @@
+//! The tree over boxes, also where many of them are one.
+//!
+//! The builder joins what fits best; among thousands of boxes that fit equally well it finds one pair a
+//! round, and takes as many rounds as there are boxes. Boxes that are nearly the same are therefore
+//! bundled before and parted after, half by half: no other order would be better. What has no such crowd
+//! gets the builder's tree as it is.
+
+use glam::Vec3A;
+use obvhs::Boundable;
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::{Bvh2, builder::build_bvh2, node::Bvh2Node};
+use rayon::prelude::*;
+
+/// Boxes nearly the same of which there may be so many without being a crowd. Fewer would bundle what
+/// real meshes have: both triangles of a flat side, fans at a pole.
+const CROWD: usize = 32;
+/// Corners are nearly the same in steps of this part of the box's size: far above what rounding parts
+/// copies by, far below what a tree could part.
+const STEP: f32 = 1.0 / 4096.0;
+/// Most primitives of a leaf of a bundle; as the builder has them.
+const LEAF: u32 = 8;
+
+/// The tree over some primitives.
+pub fn hierarchy<T: Boundable + Sync>(primitives: &[T], params: BvhBuildParams) -> Bvh2 {
+    let boxes: Vec<Aabb> = primitives.par_iter().map(Boundable::aabb).collect();
+    let bundles = bundles(&boxes);
+    if bundles.len() == boxes.len() {
+        return build_bvh2(&boxes, params, &mut Default::default());
+    }
+    let hull = |bundle: &Vec<u32>| {
+        let all = bundle.iter().map(|&i| boxes[i as usize]);
+        all.fold(Aabb::empty(), |hull, b| hull.union(&b))
+    };
+    let hulls: Vec<Aabb> = bundles.iter().map(hull).collect();
+    let mut tree = build_bvh2(&hulls, params, &mut Default::default());
+    unpack(&mut tree, &bundles, &boxes);
+    tree
+}
+
+/// Crowds of boxes that are nearly the same, in the order of the first of each; all others by themselves.
+fn bundles(boxes: &[Aabb]) -> Vec<Vec<u32>> {
+    let mut keys: Vec<([i64; 7], u32)> =
+        boxes.par_iter().map(key).zip(0..boxes.len() as u32).collect();
+    keys.par_sort_unstable();
+    let mut bundles = Vec::with_capacity(boxes.len());
+    for alike in keys.chunk_by(|a, b| a.0 == b.0) {
+        if alike.len() > CROWD {
+            bundles.push(alike.iter().map(|k| k.1).collect());
+        } else {
+            bundles.extend(alike.iter().map(|k| vec![k.1]));
+        }
+    }
+    bundles.sort_unstable();
+    bundles
+}
+
+/// The size of a box as a power of two, and its corners in steps of a part of that.
+fn key(b: &Aabb) -> [i64; 7] {
+    let power = b.diagonal().max_element().max(f32::MIN_POSITIVE).log2().ceil();
+    let step = f64::from(power).exp2() * f64::from(STEP);
+    let steps = |p: Vec3A| p.to_array().map(|x| (f64::from(x) / step).round() as i64);
+    let ([a, b, c], [d, e, f]) = (steps(b.min), steps(b.max));
+    [power as i64, a, b, c, d, e, f]
+}
+
+/// Puts the primitives in the place of their bundles.
+fn unpack(tree: &mut Bvh2, bundles: &[Vec<u32>], boxes: &[Aabb]) {
+    let packed = std::mem::take(&mut tree.primitive_indices);
+    let mut most = 0;
+    for at in 0..tree.nodes.len() {
+        let node = tree.nodes[at];
+        if !node.is_leaf() {
+            continue;
+        }
+        let first = tree.primitive_indices.len() as u32;
+        for slot in node.first_index..node.first_index + node.prim_count {
+            tree.primitive_indices.extend(&bundles[packed[slot as usize] as usize]);
+        }
+        let count = tree.primitive_indices.len() as u32 - first;
+        most = most.max(count);
+        (tree.nodes[at].first_index, tree.nodes[at].prim_count) = (first, count);
+        halve(tree, at, boxes);
+    }
+    // a half for every doubling of the largest leaf
+    tree.max_depth += most.max(1).ilog2() as usize + 1;
+}
+
+/// Parts a leaf until each has few enough primitives.
+fn halve(tree: &mut Bvh2, leaf: usize, boxes: &[Aabb]) {
+    let mut open = vec![leaf];
+    while let Some(at) = open.pop() {
+        let Bvh2Node { prim_count: count, first_index: first, .. } = tree.nodes[at];
+        if count <= LEAF {
+            continue;
+        }
+        let pair = tree.nodes.len();
+        for (first, count) in [(first, count / 2), (first + count / 2, count - count / 2)] {
+            let own = &tree.primitive_indices[first as usize..(first + count) as usize];
+            let hull = own.iter().fold(Aabb::empty(), |h, &i| h.union(&boxes[i as usize]));
+            tree.nodes.push(Bvh2Node::new(hull, count, first));
+        }
+        (tree.nodes[at].first_index, tree.nodes[at].prim_count) = (pair as u32, 0);
+        open.extend([pair, pair + 1]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::Bvh;
+    use glam::{DVec3, dvec3};
+
+    /// Copies of a triangle a hair apart, among others that are far away.
+    fn crowd(copies: usize) -> Vec<[DVec3; 3]> {
+        let shape = [DVec3::ZERO, dvec3(10.0, 0.0, 1.0), dvec3(0.0, 10.0, 2.0)];
+        let hair = |i: usize| DVec3::splat(i as f64 * 1e-12);
+        let copies = (0..copies).map(|i| shape.map(|p| p + hair(i)));
+        let others = (0..50).map(|i| shape.map(|p| p * 0.3 + dvec3(0.0, 7.0 * f64::from(i), 40.0)));
+        copies.chain(others).collect()
+    }
+
+    #[test]
+    fn every_primitive_is_in_one_leaf_and_within_its_boxes() {
+        for triangles in [crowd(0), crowd(CROWD), crowd(CROWD + 1), crowd(3000)] {
+            let boxes: Vec<Aabb> =
+                triangles.iter().map(|t| Aabb::from_points(&t.map(|p| p.as_vec3a()))).collect();
+            let tree = hierarchy(&boxes, BvhBuildParams::fast_build());
+            let mut found = vec![0; boxes.len()];
+            let mut open = vec![(0u32, tree.nodes[0].aabb, 0)];
+            while let Some((at, within, depth)) = open.pop() {
+                let node = tree.nodes[at as usize];
+                assert!(depth <= tree.max_depth && within.union(&node.aabb) == within);
+                if !node.is_leaf() {
+                    open.extend([0, 1].map(|k| (node.first_index + k, node.aabb, depth + 1)));
+                    continue;
+                }
+                let first = node.first_index as usize;
+                for &i in &tree.primitive_indices[first..first + node.prim_count as usize] {
+                    found[i as usize] += 1;
+                    assert!(node.aabb.union(&boxes[i as usize]) == node.aabb);
+                }
+            }
+            assert!(found.iter().all(|&n| n == 1), "{} of {}", found.len(), boxes.len());
+        }
+    }
+
+    /// What a crowd answers is what one of it would.
+    #[test]
+    fn forty_thousand_copies_are_as_far_away_as_one() {
+        let (one, many) = (Bvh::new(&crowd(1)), Bvh::new(&crowd(40_000)));
+        for p in [dvec3(3.0, 3.0, 9.0), dvec3(-5.0, 2.0, 0.0), dvec3(1.0, 200.0, 45.0)] {
+            assert!((one.distance(p) - many.distance(p)).abs() < 1e-6);
+        }
+    }
+}
