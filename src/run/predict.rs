@@ -9,7 +9,7 @@ use crate::morph::MorphError;
 use crate::num::Aabb;
 use crate::picture::working_memory;
 use crate::recipe::MorphEntry;
-use crate::scene::{Draft, Held, Scene, Tessellated};
+use crate::scene::{Draft, Held, Scene, Tessellated, some};
 use serde::Serialize;
 
 /// Bricks, triangles and bytes of the largest frame, and of the run's memory at its peak.
@@ -63,9 +63,9 @@ const DRAWN_BYTES: f64 = 50.0;
 /// What a triangle of an input takes while the field of its mesh is made.
 const FIELD_BYTES: f64 = 550.0;
 /// A triangle in the field of a surface that is closed: in two trees, of the faces and of what tells
-/// inside from outside. Measured on tori of 20 000 to 720 000 triangles: 650 to 720.
+/// inside from outside. Measured on tori of 20 000 to 720 000 triangles: 640 to 720.
 const SOLID_BYTES: f64 = 650.0;
-/// The same in the field of a sheet: one tree. Measured: 460 to 620.
+/// The same in the field of a sheet: one tree. Measured: 460 to 630.
 const SHEET_BYTES: f64 = 460.0;
 /// What a triangle takes beside that while such a field is made. Measured: 270 to 350.
 const MAKING_BYTES: f64 = 300.0;
@@ -252,11 +252,8 @@ fn field_bytes(s: &Tessellated) -> f64 {
 
 /// The fields of surfaces that are there at once: all the first ones, and one that is of the frame.
 fn held(surfaces: &[Tessellated]) -> f64 {
-    let of = |which: [Held; 2]| {
-        surfaces.iter().filter(move |s| which.contains(&s.held)).map(field_bytes)
-    };
-    let first: f64 = of([Held::First, Held::FirstAndLast]).sum();
-    first + of([Held::Last, Held::FirstAndLast]).fold(0.0, f64::max)
+    let of = |held| surfaces.iter().filter(move |s| s.held == held).map(field_bytes);
+    of(Held::First).sum::<f64>() + of(Held::Last).fold(0.0, f64::max)
 }
 
 /// What is taken while the largest field is made: beyond what is held, of those that stay; of those that
@@ -319,11 +316,4 @@ impl Probe<'_> {
         }
         Ok((most, with_fields))
     }
-}
-
-/// The first, the middle and the last: surfaces change little between times.
-fn some(times: &[f64]) -> Vec<f64> {
-    let mut at = vec![0, times.len() / 2, times.len().saturating_sub(1)];
-    at.dedup();
-    at.into_iter().filter_map(|i| times.get(i).copied()).collect()
 }

@@ -117,17 +117,16 @@ impl Draft {
             let Body::Surface(s) = &p.body else { return None };
             let purpose = &self.uses[&p.name];
             let first = purpose.times.first().copied().unwrap_or(0.5);
-            let held = match (s.moves(), purpose.alone) {
-                // the first for the whole run, and that of the frame
-                (true, _) => Held::FirstAndLast,
-                (false, true) => Held::First,
-                (false, false) => Held::Never,
-            };
-            Some(Tessellated {
-                triangles: s.triangles(first, step),
-                sheet: s.sheet().is_some(),
-                held,
-            })
+            let of = |triangles, held| Tessellated { triangles, sheet: s.sheet().is_some(), held };
+            let at_first = s.triangles(first, step);
+            if !s.moves() {
+                let held = if purpose.alone { Held::First } else { Held::Never };
+                return Some(vec![of(at_first, held)]);
+            }
+            // the first for the whole run, and that of the frame
+            let later = some(&purpose.times).into_iter().filter(|&t| t != first);
+            let most = later.map(|t| s.triangles(t, step)).fold(at_first, usize::max);
+            Some(vec![of(at_first, Held::First), of(most, Held::Last)])
         });
         let pairs = self.recipe.variants().into_iter().filter_map(|(at, entry)| {
             let method = entry.method?.surface()?;
@@ -145,7 +144,7 @@ impl Draft {
             let sheet = s.sheet().is_some();
             Some(Tessellated { triangles: s.triangles(middle, step), sheet, held: Held::Last })
         });
-        shapes.chain(pairs).collect()
+        shapes.flatten().chain(pairs).collect()
     }
 
     /// The box and the area (mm²) of each shape that has a sampled form in cells of `step` mm. Both sides
@@ -311,8 +310,13 @@ pub enum Held {
     First,
     /// For its frame.
     Last,
-    /// That of the first time as long as the run, and one for each frame.
-    FirstAndLast,
+}
+
+/// The first, the middle and the last: surfaces change little between times.
+pub fn some(times: &[f64]) -> Vec<f64> {
+    let mut at = vec![0, times.len() / 2, times.len().saturating_sub(1)];
+    at.dedup();
+    at.into_iter().filter_map(|i| times.get(i).copied()).collect()
 }
 
 /// What a shape is for.

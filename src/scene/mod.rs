@@ -26,7 +26,7 @@ mod variant;
 mod tests;
 
 pub use auto::{Search, Seen};
-pub use draft::{Draft, Held, Tessellated};
+pub use draft::{Draft, Held, Tessellated, some};
 pub use live::LiveShape;
 pub use single::Single;
 pub use variant::Variant;
