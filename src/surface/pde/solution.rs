@@ -291,3 +291,31 @@ fn add(row: &mut [f64], [a, b]: [f64; 2], cos: &[f64], sin: &[f64]) {
         *x += a * c + b * s;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Wave;
+
+    /// Whatever the steps, the waves are those of n v.
+    #[test]
+    fn waves_turn_on_by_any_step() {
+        let orders: [Vec<usize>; 6] = [
+            (1..=500).collect(),
+            (1..=500).step_by(2).collect(),
+            (4..=1000).step_by(4).collect(),
+            vec![1, 2, 4, 5, 7, 8, 10, 11],
+            vec![3, 3, 6, 6, 9],
+            vec![5, 2, 4, 1, 2, 3, 40],
+        ];
+        for v in [0.0, 0.3, 1.9, 3.2, 6.2] {
+            for order in &orders {
+                let mut wave = Wave::new(v);
+                for &n in order {
+                    let (sin, cos) = wave.at(n);
+                    let (s, c) = (n as f64 * v).sin_cos();
+                    assert!((sin - s).abs() < 1e-12 && (cos - c).abs() < 1e-12, "{n} of {order:?}");
+                }
+            }
+        }
+    }
+}
