@@ -15,10 +15,9 @@ use std::sync::Arc;
 /// A box of triangles is seen as one dipole from farther than this many of its radii.
 const BETA: f64 = 2.0;
 /// How near the level in question the tree's answer is not trusted, and the wider opening used
-/// then. Third order at 2 radii is off by up to .003 on a ball and falls with the fourth power.
-const REFINE: [(f64, f64); 2] = [(0.02, 6.0), (3e-4, 20.0)];
-/// Nearer than this to the level only the sum over all triangles decides.
-const EXACT: f64 = 2e-6;
+/// then: in the end the sum over all triangles decides. Third order at 2 radii is off by up to .003
+/// on a ball and falls with the fourth power.
+const REFINE: [(f64, f64); 3] = [(0.02, 6.0), (3e-4, 20.0), (2e-6, f64::INFINITY)];
 
 /// The generalised winding number of oriented triangles: 1 inside one closed shell whose faces are
 /// counter-clockwise seen from outside, 0 outside; sums over shells, fractions near open rims.
@@ -69,35 +68,40 @@ impl Winding {
 
     /// The same of the points whose bit is set in `of`; the others are 0.
     pub fn numbers_of(&self, at: &[DVec3], of: u8, levels: [f64; LANES]) -> [f64; LANES] {
+        self.both_of(at, of, levels)[1]
+    }
+
+    /// What [`Winding::roughly_of`] and [`Winding::numbers_of`] answer, for little more than the latter.
+    pub fn both_of(&self, at: &[DVec3], of: u8, levels: [f64; LANES]) -> [[f64; LANES]; 2] {
         let stack = &mut Vec::with_capacity(64);
         let mut w = [0.0; LANES];
         let mut open = of & all(at);
-        let mut beta = BETA;
         let near = |w: &[f64; LANES], open: u8, reach: f64| {
             let doubtful = |i: &usize| open >> i & 1 == 1 && (w[*i] - levels[*i]).abs() < reach;
             (0..LANES).filter(doubtful).fold(0u8, |bits, i| bits | 1 << i)
         };
-        for (reach, wider) in REFINE {
-            self.tree(at, beta, open, stack, &mut w);
+        self.tree(at, BETA, open, stack, &mut w);
+        let rough = w;
+        for (reach, beta) in REFINE {
             open = near(&w, open, reach);
             if open == 0 {
-                return w;
+                return [rough, w];
             }
-            beta = wider;
+            self.tree(at, beta, open, stack, &mut w);
         }
-        self.tree(at, beta, open, stack, &mut w);
-        open = near(&w, open, EXACT);
-        if open != 0 {
-            self.tree(at, f64::INFINITY, open, stack, &mut w);
-        }
-        w
+        [rough, w]
     }
 
     /// The winding numbers at up to eight points as the tree has them at once, off by some
     /// hundredths at worst. Lanes without a point are 0.
     pub fn roughly(&self, at: &[DVec3]) -> [f64; LANES] {
+        self.roughly_of(at, u8::MAX)
+    }
+
+    /// The same of the points whose bit is set in `of`; the others are 0.
+    pub fn roughly_of(&self, at: &[DVec3], of: u8) -> [f64; LANES] {
         let mut w = [0.0; LANES];
-        self.tree(at, BETA, all(at), &mut Vec::with_capacity(64), &mut w);
+        self.tree(at, BETA, of & all(at), &mut Vec::with_capacity(64), &mut w);
         w
     }
 

@@ -1,7 +1,7 @@
 //! The faces, and pieces of faces, across which inside and outside change: the surface. What lies
 //! inside the union of several shells, or has outside on both sides, is none.
 
-use super::cut::{Class, Cutter, Scale};
+use super::cut::{Class, Cuts, Cutter, Piece, Scale};
 use super::inside::Inside;
 use super::soup::{Sets, edges, sides};
 use crate::bvh::{Bvh, Winding, apart};
@@ -156,25 +156,18 @@ impl Surface {
 }
 
 impl Faces<'_> {
-    /// What lies on both sides of a point of a face.
-    fn class(&self, p: DVec3, normal: DVec3) -> Class {
-        self.classes(&[(p, normal)])[0]
-    }
-
     /// What lies on both sides of up to four points of faces.
     fn classes(&self, at: &[(DVec3, DVec3)]) -> [Class; GROUP] {
+        classes_of(self.inside.which(&self.sides_of(at)))
+    }
+
+    /// The points just in front of and behind points of faces.
+    fn sides_of(&self, at: &[(DVec3, DVec3)]) -> Vec<DVec3> {
         let off = |&(p, normal): &(DVec3, DVec3)| {
             let off = normal * self.scale.offset;
             [p + off, p - off]
         };
-        let points: Vec<DVec3> = at.iter().flat_map(off).collect();
-        let inside = self.inside.which(&points);
-        std::array::from_fn(|i| match inside >> (2 * i) & 3 {
-            0b10 => Class::Surface,
-            0b01 => Class::Reversed,
-            0b11 => Class::Buried,
-            _ => Class::Nothing,
-        })
+        at.iter().flat_map(off).collect()
     }
 
     /// For each face the faces that touch or cross it other than where they are joined, in order.
@@ -276,13 +269,16 @@ impl Faces<'_> {
 
     /// The class of a patch of a closed shell, by its largest face and some more.
     fn patch(&self, patch: &[u32]) -> Option<Class> {
-        let size = |&&f: &&u32| area(&self.triangles[f as usize]);
-        let largest = patch.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
-        let class =
-            |f: u32| self.class(middle(&self.triangles[f as usize]), self.normals[f as usize]);
-        let first = class(*largest);
+        let size = |f: u32| area(&self.triangles[f as usize]);
+        let sizes = patch.iter().map(|&f| (f, size(f)));
+        let (largest, _) = sizes.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let place = |f: u32| (middle(&self.triangles[f as usize]), self.normals[f as usize]);
         let step = patch.len().div_ceil(PROBES);
-        patch.iter().step_by(step).all(|&f| class(f) == first).then_some(first)
+        let probes = patch.iter().step_by(step).copied();
+        let places: Vec<_> = std::iter::once(largest).chain(probes).map(place).collect();
+        let first = self.classes(&places[..1])[0];
+        let same = |at: &[(DVec3, DVec3)]| self.classes(at)[..at.len()].iter().all(|&c| c == first);
+        places[1..].chunks(GROUP).all(same).then_some(first)
     }
 
     /// The classes of up to four faces, surface where part of one seems to be, and their trust.
@@ -292,24 +288,28 @@ impl Faces<'_> {
             .iter()
             .map(|&f| (middle(&self.triangles[f as usize]), self.normals[f as usize]))
             .collect();
-        let ball = |(&f, &(centre, n)): (&u32, &(DVec3, DVec3))| {
+        let ball = |(&f, &(centre, _)): (&u32, &(DVec3, DVec3))| {
             let corners = self.triangles[f as usize].iter();
             let radius = corners.fold(0.0, |r: f64, p| r.max(p.distance(centre)));
-            (centre + n * offset, radius + 2.0 * offset)
+            // round the point in front
+            [Some(radius + 2.0 * offset), None]
         };
-        let balls: Vec<_> = faces.iter().zip(&places).map(ball).collect();
-        let (classes, sharp) = (self.classes(&places), self.inside.which_sharp(&balls));
-        let known = faces.iter().zip(places).zip(classes).enumerate();
+        let balls: Vec<_> = faces.iter().zip(&places).flat_map(ball).collect();
+        let (inside, sharp) = self.inside.which_and_sharp(&self.sides_of(&places), &balls);
+        let known = faces.iter().zip(places).zip(classes_of(inside)).enumerate();
         known
             .map(|(i, ((&f, (centre, n)), class))| {
-                if sharp >> i & 1 == 1 {
+                if sharp >> (2 * i) & 1 == 1 {
                     return (class, Trust::Within(0.0));
+                }
+                if class.is_surface() {
+                    return (class, Trust::Local);
                 }
                 let t = &self.triangles[f as usize];
                 let toward = t.map(|p| (centre + (p - centre) * 0.75, n));
-                let is_surface = |c: &Class| matches!(c, Class::Surface | Class::Reversed);
                 let [a, b, c, _] = self.classes(&toward);
-                ([class, a, b, c].into_iter().find(is_surface).unwrap_or(class), Trust::Local)
+                let surface = [a, b, c].into_iter().find(|c| c.is_surface());
+                (surface.unwrap_or(class), Trust::Local)
             })
             .collect()
     }
@@ -326,47 +326,72 @@ impl Faces<'_> {
         out.contact_faces = all.len();
         let limit = LIMIT + LIMIT_EACH * self.faces.len();
         let mut spent = 0;
-        let classify = |p: DVec3, n: DVec3| self.class(p, n);
         for chunk in all.chunks(CHUNK) {
             check(job)?;
             let full = spent > limit;
-            let pieces: Vec<_> = chunk
-                .par_iter()
-                .map(|&f| {
-                    let contacts = if full { &[][..] } else { &contacts[f as usize][..] };
-                    let n = self.normals[f as usize];
-                    let mut cutter =
-                        Cutter::new(&self.triangles, &self.normals, self.scale, &classify, n);
-                    let pieces = cutter.pieces(f as usize, contacts);
-                    (pieces, cutter.spent)
-                })
-                .collect();
-            for (&f, (face, work)) in chunk.iter().zip(pieces) {
-                spent += work;
-                out.buried_faces += usize::from(face.iter().any(|p| p.class == Class::Buried));
-                let t = &self.triangles[f as usize];
-                let empty = face.iter().filter(|p| p.class == Class::Nothing);
-                let empty: f64 = empty.map(|p| area(&p.corners)).sum();
-                if empty > 0.5 * area(t) && height(t) > SHEET * self.scale.slack {
-                    out.sheets.push(*t);
-                }
-                for p in face {
-                    let doubtful = p.doubtful || full;
-                    let trust = self.trust(&p.corners, doubtful);
-                    out.add(&p.corners, p.class, trust);
-                }
-            }
+            let cut = |&f: &u32| {
+                let contacts = if full { &[][..] } else { &contacts[f as usize][..] };
+                let n = self.normals[f as usize];
+                let cutter = Cutter::new(&self.triangles, &self.normals, self.scale, n);
+                cutter.face(f as usize, contacts)
+            };
+            let cuts: Vec<Cuts> = chunk.par_iter().map(cut).collect();
+            spent += cuts.iter().map(|c| c.spent).sum::<usize>();
+            self.sort_out(chunk, cuts, full, out);
         }
         Ok(())
     }
 
-    /// Near the line where faces meet, a piece's side does not tell.
-    fn trust(&self, corners: &[DVec3], doubtful: bool) -> Trust {
-        let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let radius = corners.iter().fold(0.0, |r: f64, p| r.max(p.distance(centre)));
-        if doubtful || !self.inside.sharp(centre, radius) {
-            return Trust::Never;
+    /// Adds what is surface of faces that have been cut; with `full` none of it is to be trusted.
+    fn sort_out(&self, faces: &[u32], cuts: Vec<Cuts>, full: bool, out: &mut Surface) {
+        let normal = |f: u32| self.normals[f as usize];
+        let places = |(&f, cuts): (&u32, &Cuts)| cuts.middles().map(|p| (p, normal(f))).collect();
+        let places: Vec<Vec<(DVec3, DVec3)>> = faces.par_iter().zip(&cuts).map(places).collect();
+        let places = places.concat();
+        let known = |at: &[(DVec3, DVec3)]| (self.classes(at), at.len());
+        let classes: Vec<_> = places.par_chunks(GROUP).map(known).collect();
+        let mut classes = classes.into_iter().flat_map(|(classes, n)| classes.into_iter().take(n));
+        let pieces: Vec<Vec<Piece>> = cuts.into_iter().map(|c| c.pieces(&mut classes)).collect();
+        let all: Vec<&Piece> = pieces.iter().flatten().collect();
+        let trust = |some: &[&Piece]| self.trust(some, full);
+        let trust: Vec<Trust> = all.par_chunks(Winding::LANES).flat_map_iter(trust).collect();
+        let mut trust = trust.into_iter();
+        for (&f, face) in faces.iter().zip(&pieces) {
+            out.buried_faces += usize::from(face.iter().any(|p| p.class == Class::Buried));
+            let t = &self.triangles[f as usize];
+            let empty = face.iter().filter(|p| p.class == Class::Nothing);
+            let empty: f64 = empty.map(|p| area(&p.corners)).sum();
+            if empty > 0.5 * area(t) && height(t) > SHEET * self.scale.slack {
+                out.sheets.push(*t);
+            }
+            for (p, trust) in face.iter().zip(&mut trust) {
+                out.add(&p.corners, p.class, trust);
+            }
         }
-        Trust::Within(2.0 * self.scale.slack)
     }
+
+    /// Near the line where faces meet, a piece's side does not tell; of up to eight pieces.
+    fn trust(&self, pieces: &[&Piece], full: bool) -> Vec<Trust> {
+        let ball = |p: &&Piece| {
+            let centre = p.corners.iter().sum::<DVec3>() / p.corners.len() as f64;
+            (centre, p.corners.iter().fold(0.0, |r: f64, c| r.max(c.distance(centre))))
+        };
+        let balls: Vec<_> = pieces.iter().map(ball).collect();
+        let sharp = if full { 0 } else { self.inside.which_sharp(&balls) };
+        let trust = |(i, p): (usize, &&Piece)| match sharp >> i & 1 {
+            1 if !p.doubtful => Trust::Within(2.0 * self.scale.slack),
+            _ => Trust::Never,
+        };
+        pieces.iter().enumerate().map(trust).collect()
+    }
+}
+
+/// Classes by what is inside: a point in front of each face and one behind, a bit for each.
+fn classes_of(inside: u8) -> [Class; GROUP] {
+    std::array::from_fn(|i| match inside >> (2 * i) & 3 {
+        0b10 => Class::Surface,
+        0b01 => Class::Reversed,
+        0b11 => Class::Buried,
+        _ => Class::Nothing,
+    })
 }

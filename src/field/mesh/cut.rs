@@ -16,6 +16,13 @@ pub(super) enum Class {
     Nothing,
 }
 
+impl Class {
+    /// Whether inside and outside change across it.
+    pub(super) fn is_surface(self) -> bool {
+        matches!(self, Self::Surface | Self::Reversed)
+    }
+}
+
 /// Lengths that the work on contacts goes by, mm.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
@@ -93,13 +100,69 @@ pub(super) struct Cutter<'a> {
     pub triangles: &'a [[DVec3; 3]],
     pub normals: &'a [DVec3],
     pub scale: Scale,
-    /// Class of a piece by a point on it.
-    pub classify: &'a dyn Fn(DVec3, DVec3) -> Class,
     /// The face's own normal.
     pub normal: DVec3,
     budget: usize,
+    parts: Vec<Part>,
     /// Work spent so far.
+    spent: usize,
+}
+
+/// A part of a face: one piece, or what the next two parts, with all that they are cut into, make up.
+struct Part {
+    corners: Vec<DVec3>,
+    cut: bool,
+    doubtful: bool,
+}
+
+/// A face cut as far as it goes. What each part is shall be told for [`Cuts::middles`], in order.
+pub(super) struct Cuts {
+    parts: Vec<Part>,
+    /// Work spent.
     pub spent: usize,
+}
+
+impl Cuts {
+    /// A point of each part that is not cut any further.
+    pub(super) fn middles(&self) -> impl Iterator<Item = DVec3> {
+        let whole = self.parts.iter().filter(|p| !p.cut);
+        whole.map(|p| p.corners.iter().sum::<DVec3>() / p.corners.len() as f64)
+    }
+
+    /// The pieces, those of one class that were one before joined again; `classes` has one for each
+    /// of the middles.
+    pub(super) fn pieces(self, classes: &mut impl Iterator<Item = Class>) -> Vec<Piece> {
+        let mut pieces = vec![];
+        join(&mut self.parts.into_iter(), classes, &mut pieces);
+        pieces
+    }
+}
+
+/// Adds the pieces of the next part.
+fn join(
+    parts: &mut impl Iterator<Item = Part>,
+    classes: &mut impl Iterator<Item = Class>,
+    out: &mut Vec<Piece>,
+) {
+    let Some(Part { corners, cut, doubtful }) = parts.next() else {
+        return;
+    };
+    if !cut {
+        let class = classes.next().unwrap_or(Class::Nothing);
+        return out.push(Piece { corners, class, doubtful });
+    }
+    let first = out.len();
+    join(parts, classes, out);
+    let second = out.len();
+    join(parts, classes, out);
+    if let [a, b] = &out[first..]
+        && second == first + 1
+        && a.class == b.class
+    {
+        let (class, doubtful) = (a.class, a.doubtful || b.doubtful);
+        out.truncate(first);
+        out.push(Piece { corners, class, doubtful });
+    }
 }
 
 impl<'a> Cutter<'a> {
@@ -107,19 +170,19 @@ impl<'a> Cutter<'a> {
         triangles: &'a [[DVec3; 3]],
         normals: &'a [DVec3],
         scale: Scale,
-        classify: &'a dyn Fn(DVec3, DVec3) -> Class,
         normal: DVec3,
     ) -> Self {
-        Self { triangles, normals, scale, classify, normal, budget: 0, spent: 0 }
+        Self { triangles, normals, scale, normal, budget: 0, parts: vec![], spent: 0 }
     }
 
-    /// The pieces of face `index`, given the faces that touch it; one piece if it is all alike.
-    pub(super) fn pieces(&mut self, index: usize, contacts: &[u32]) -> Vec<Piece> {
+    /// Cuts face `index` along the faces that touch it.
+    pub(super) fn face(mut self, index: usize, contacts: &[u32]) -> Cuts {
         self.budget = WORK + WORK_EACH * contacts.len();
-        self.cut(self.triangles[index].to_vec(), contacts, DEPTH)
+        self.cut(self.triangles[index].to_vec(), contacts, DEPTH);
+        Cuts { parts: self.parts, spent: self.spent }
     }
 
-    fn cut(&mut self, corners: Vec<DVec3>, contacts: &[u32], depth: u32) -> Vec<Piece> {
+    fn cut(&mut self, corners: Vec<DVec3>, contacts: &[u32], depth: u32) {
         self.spent += contacts.len();
         let touches = |&&b: &&u32| !apart(&corners, &self.triangles[b as usize], self.scale.slack);
         let near: Vec<u32> = contacts.iter().filter(touches).copied().collect();
@@ -129,33 +192,23 @@ impl<'a> Cutter<'a> {
         let plane = match planes.first() {
             Some(_) if planes.len() > CROWD => halving,
             Some(&plane) => plane,
-            None => return vec![self.leaf(corners, false)],
+            None => return self.leaf(corners, false),
         };
         if done {
-            return vec![self.leaf(corners, true)];
+            return self.leaf(corners, true);
         }
         let [front, back] = plane.split(&corners);
         if front.len() < 3 || back.len() < 3 {
-            return vec![self.leaf(corners, true)];
+            return self.leaf(corners, true);
         }
-        let mut pieces = self.cut(front, &near, depth - 1);
-        let mut rest = self.cut(back, &near, depth - 1);
-        match (&pieces[..], &rest[..]) {
-            ([a], [b]) if a.class == b.class => {
-                vec![Piece { corners, class: a.class, doubtful: a.doubtful || b.doubtful }]
-            }
-            _ => {
-                pieces.append(&mut rest);
-                pieces
-            }
-        }
+        self.parts.push(Part { corners, cut: true, doubtful: false });
+        self.cut(front, &near, depth - 1);
+        self.cut(back, &near, depth - 1);
     }
 
-    fn leaf(&mut self, corners: Vec<DVec3>, doubtful: bool) -> Piece {
+    fn leaf(&mut self, corners: Vec<DVec3>, doubtful: bool) {
         self.spent += ASK;
-        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let class = (self.classify)(middle, self.normal);
-        Piece { corners, class, doubtful }
+        self.parts.push(Part { corners, cut: false, doubtful });
     }
 
     /// A plane along which touching face `b` may part inside from outside on the piece, if it

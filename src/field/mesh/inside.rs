@@ -70,6 +70,11 @@ impl Inside {
     /// Which of up to eight points, of those whose bit is set in `of`, are inside by winding numbers
     /// alone. Each gets the answer that it gets alone.
     pub(super) fn which_raw(&self, at: &[DVec3], of: u8) -> u8 {
+        self.which_and_seen(at, of).0
+    }
+
+    /// The same, and what of the open shells' winding numbers came up on the way.
+    fn which_and_seen(&self, at: &[DVec3], of: u8) -> (u8, Seen) {
         let bounds = self.closed.bounds();
         let near = of & which(at, |_, p| bounds.contains(p));
         let mut closed = [0.0; Winding::LANES];
@@ -80,11 +85,19 @@ impl Inside {
         let solid = of & which(at, |i, _| closed[i] >= 1.0);
         let rest = of & !solid;
         if rest == 0 || self.open.is_empty() {
-            return solid;
+            return (solid, Seen::default());
         }
         let levels = closed.map(|closed| 0.5 - closed);
-        let open = self.open.numbers_of(at, rest, levels);
-        solid | rest & which(at, |i, _| open[i] >= levels[i])
+        let [numbers, open] = self.open.both_of(at, rest, levels);
+        (solid | rest & which(at, |i, _| open[i] >= levels[i]), Seen { of: rest, numbers })
+    }
+
+    /// Which of up to eight points are inside, a bit for each; and for which of those that have a radius
+    /// the ball round them is sharp, see [`Inside::which_sharp`].
+    pub(super) fn which_and_sharp(&self, at: &[DVec3], radii: &[Option<f64>]) -> (u8, u8) {
+        let there = which(at, |_, p| self.bounds.contains(p));
+        let (inside, seen) = self.which_and_seen(at, there);
+        (inside, self.sharp_of(at, radii, seen))
     }
 
     /// The winding numbers of the open shells at up to eight points, roughly.
@@ -92,30 +105,43 @@ impl Inside {
         self.open.roughly(at)
     }
 
-    /// Whether in that ball only faces part inside from outside (before the cut at the box): the
-    /// winding number's smooth part, which the rims make, stays off one half.
-    pub(super) fn sharp(&self, centre: DVec3, radius: f64) -> bool {
-        self.which_sharp(&[(centre, radius)]) != 0
-    }
-
-    /// For which of up to eight balls that is so, a bit for each.
+    /// For which of up to eight balls only faces part inside from outside in them (before the cut at the
+    /// box), a bit for each: the winding number's smooth part, which the rims make, stays off one half.
     pub(super) fn which_sharp(&self, balls: &[(DVec3, f64)]) -> u8 {
         let centres: Vec<DVec3> = balls.iter().map(|b| b.0).collect();
+        let radii: Vec<_> = balls.iter().map(|b| Some(b.1)).collect();
+        self.sharp_of(&centres, &radii, Seen::default())
+    }
+
+    /// The same of those points that have a radius.
+    fn sharp_of(&self, at: &[DVec3], radii: &[Option<f64>], seen: Seen) -> u8 {
+        let asked = which(at, |i, _| radii[i].is_some());
         if self.open.is_empty() {
-            return which(&centres, |_, _| true);
+            return asked;
         }
         let most = 0.5 - TREE_ERROR;
-        let change = |&(centre, r): &(DVec3, f64)| self.rim.variation(centre, r, most / r) * r;
-        let changes: Vec<f64> = balls.iter().map(change).collect();
-        if changes.iter().all(|&change| change >= most) {
-            return 0;
-        }
-        let numbers = self.open_numbers(&centres);
-        which(&centres, |i, _| {
-            let part = (numbers[i] - 0.5).rem_euclid(1.0);
-            changes[i] < most && changes[i] + TREE_ERROR < part.min(1.0 - part)
-        })
+        let change = |(&centre, r): (&DVec3, &Option<f64>)| {
+            r.map_or(f64::INFINITY, |r| self.rim.variation(centre, r, most / r) * r)
+        };
+        let changes: Vec<f64> = at.iter().zip(radii).map(change).collect();
+        let open = asked & which(at, |i, _| changes[i] < most);
+        let rest = open & !seen.of;
+        let more = if rest == 0 { seen.numbers } else { self.open.roughly_of(at, rest) };
+        let sharp = |i: usize, _| {
+            let number = if seen.of >> i & 1 == 1 { seen.numbers[i] } else { more[i] };
+            let part = (number - 0.5).rem_euclid(1.0);
+            changes[i] + TREE_ERROR < part.min(1.0 - part)
+        };
+        open & which(at, sharp)
     }
+}
+
+/// Winding numbers of the open shells at some of eight points, roughly.
+#[derive(Default)]
+struct Seen {
+    /// A bit for each point whose number is known.
+    of: u8,
+    numbers: [f64; Winding::LANES],
 }
 
 /// The bits of the points for which something holds.
