@@ -11,19 +11,16 @@ pub fn gap(corners: [DVec3; 3], p: DVec3) -> f64 {
 /// Separating axes: the line from middle to middle, which parts most of what is apart; both normals,
 /// the sides' normals within each plane, and all products of a side of one with a side of the other.
 pub fn apart(a: &[DVec3], b: &[DVec3], slack: f64) -> bool {
-    let gap = |axis: DVec3| gap_along(a, b, axis) > slack;
+    let parts = |axis: DVec3| gap_along(a, b, axis, slack);
     let middle = |p: &[DVec3]| p.iter().sum::<DVec3>() / p.len() as f64;
-    if gap(middle(b) - middle(a)) {
+    if parts(middle(b) - middle(a)) {
         return true;
     }
     let (na, nb) = (normal(a), normal(b));
-    if gap(na) || gap(nb) {
+    if parts(na) || parts(nb) || sides(b).any(|t| parts(t.cross(nb))) {
         return true;
     }
-    let within = |side: DVec3, n: DVec3| side.cross(n);
-    sides(a).any(|s| gap(within(s, na)))
-        || sides(b).any(|s| gap(within(s, nb)))
-        || sides(a).any(|s| sides(b).any(|t| gap(s.cross(t))))
+    sides(a).any(|s| parts(s.cross(na)) || sides(b).any(|t| parts(s.cross(t))))
 }
 
 fn sides(p: &[DVec3]) -> impl Iterator<Item = DVec3> {
@@ -41,20 +38,22 @@ fn normal(p: &[DVec3]) -> DVec3 {
         .normalize_or_zero()
 }
 
-/// Distance between the shadows on an axis; negative when they overlap or the axis says nothing.
-fn gap_along(a: &[DVec3], b: &[DVec3], axis: DVec3) -> f64 {
-    // sides nearly parallel give a direction of round-off only
-    let length = axis.length();
-    if length <= 1e-9 || length.is_nan() {
-        return f64::NEG_INFINITY;
-    }
+/// Whether the shadows on an axis are more than `slack` from each other; no if the axis says nothing.
+#[inline(always)]
+fn gap_along(a: &[DVec3], b: &[DVec3], axis: DVec3, slack: f64) -> bool {
     let shadow = |p: &[DVec3]| {
         p.iter()
             .map(|p| p.dot(axis))
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)))
     };
     let ((alo, ahi), (blo, bhi)) = (shadow(a), shadow(b));
-    (alo - bhi).max(blo - ahi) / length
+    let gap = (alo - bhi).max(blo - ahi);
+    if gap <= 0.0 && slack >= 0.0 {
+        return false;
+    }
+    // sides nearly parallel give a direction of round-off only
+    let length = axis.length();
+    length > 1e-9 && gap / length > slack
 }
 
 #[cfg(test)]

@@ -178,32 +178,34 @@ impl<'a> Cutter<'a> {
     /// Cuts face `index` along the faces that touch it.
     pub(super) fn face(mut self, index: usize, contacts: &[u32]) -> Cuts {
         self.budget = WORK + WORK_EACH * contacts.len();
-        self.cut(self.triangles[index].to_vec(), contacts, DEPTH);
+        self.cut(self.triangles[index].to_vec(), contacts, true, DEPTH);
         Cuts { parts: self.parts, spent: self.spent }
     }
 
-    fn cut(&mut self, corners: Vec<DVec3>, contacts: &[u32], depth: u32) {
+    /// Cuts a part along those of the contacts that touch it: the whole face is touched by all.
+    fn cut(&mut self, corners: Vec<DVec3>, contacts: &[u32], whole: bool, depth: u32) {
         self.spent += contacts.len();
-        let touches = |&&b: &&u32| !apart(&corners, &self.triangles[b as usize], self.scale.slack);
-        let near: Vec<u32> = contacts.iter().filter(touches).copied().collect();
-        let planes: Vec<Plane> = near.iter().filter_map(|&b| self.plane(&corners, b)).collect();
-        let (size, halving) = halving(&corners);
-        let done = depth == 0 || self.spent > self.budget || size < self.scale.floor;
-        let plane = match planes.first() {
-            Some(_) if planes.len() > CROWD => halving,
-            Some(&plane) => plane,
-            None => return self.leaf(corners, false),
+        let (scale, triangles) = (self.scale, self.triangles);
+        let near = |&b: &u32| whole || !apart(&corners, &triangles[b as usize], scale.slack);
+        // a plane is had for less than it is told what is near
+        let across = |&b: &u32| Some(self.plane(&corners, b)).flatten().filter(|_| near(&b));
+        let mut planes = contacts.iter().filter_map(across);
+        let Some(first) = planes.next() else {
+            return self.leaf(corners, false);
         };
-        if done {
+        let (size, halving) = halving(&corners);
+        if depth == 0 || self.spent > self.budget || size < scale.floor {
             return self.leaf(corners, true);
         }
-        let [front, back] = plane.split(&corners);
+        let crowded = contacts.len() > CROWD && planes.nth(CROWD - 1).is_some();
+        let [front, back] = if crowded { halving } else { first }.split(&corners);
         if front.len() < 3 || back.len() < 3 {
             return self.leaf(corners, true);
         }
+        let near: Vec<u32> = contacts.iter().filter(|b| near(b)).copied().collect();
         self.parts.push(Part { corners, cut: true, doubtful: false });
-        self.cut(front, &near, depth - 1);
-        self.cut(back, &near, depth - 1);
+        self.cut(front, &near, false, depth - 1);
+        self.cut(back, &near, false, depth - 1);
     }
 
     fn leaf(&mut self, corners: Vec<DVec3>, doubtful: bool) {
