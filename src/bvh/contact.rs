@@ -5,26 +5,30 @@ pub fn gap(corners: [DVec3; 3], p: DVec3) -> f64 {
     super::triangle::Tri::new(corners).distance2(p.x, p.y, p.z).sqrt()
 }
 
-/// Whether two flat convex polygons (triangles, or segments of two points) are separated by more
-/// than `slack` mm. Errs on the side of `false`: what touches or overlaps is never called apart.
+/// A flat convex polygon (a triangle, or a segment of two points) and its unit normal, zero without area.
+#[derive(Clone, Copy)]
+pub struct Flat<'a>(pub &'a [DVec3], pub DVec3);
+
+impl<'a> Flat<'a> {
+    /// With the normal that its corners have.
+    pub fn of(corners: &'a [DVec3]) -> Self {
+        Self(corners, normal(corners))
+    }
+}
+
+/// Whether two polygons are separated by more than `slack` mm, which is not negative. Errs on the side
+/// of `false`: what touches or overlaps is never called apart.
 ///
 /// Separating axes: the line from middle to middle, which parts most of what is apart; both normals,
 /// the sides' normals within each plane, and all products of a side of one with a side of the other.
-pub fn apart(a: &[DVec3], b: &[DVec3], slack: f64) -> bool {
-    let parts = |axis: DVec3| gap_along(a, b, axis, slack);
+pub fn apart(Flat(a, na): Flat, Flat(b, nb): Flat, slack: f64) -> bool {
+    let parts = |axis: DVec3| parts(a, b, axis, slack);
     let middle = |p: &[DVec3]| p.iter().sum::<DVec3>() / p.len() as f64;
-    if parts(middle(b) - middle(a)) {
+    if parts(middle(b) - middle(a)) || parts(na) || parts(nb) {
         return true;
     }
-    let (na, nb) = (normal(a), normal(b));
-    if parts(na) || parts(nb) || sides(b).any(|t| parts(t.cross(nb))) {
-        return true;
-    }
-    sides(a).any(|s| parts(s.cross(na)) || sides(b).any(|t| parts(s.cross(t))))
-}
-
-fn sides(p: &[DVec3]) -> impl Iterator<Item = DVec3> {
-    (0..p.len()).map(move |i| (p[(i + 1) % p.len()] - p[i]).normalize_or_zero())
+    sides(b).any(|t| parts(t.cross(nb)))
+        || sides(a).any(|s| parts(s.cross(na)) || sides(b).any(|t| parts(s.cross(t))))
 }
 
 /// Unit normal of a flat polygon (Newell), zero without area.
@@ -38,9 +42,13 @@ fn normal(p: &[DVec3]) -> DVec3 {
         .normalize_or_zero()
 }
 
+fn sides(p: &[DVec3]) -> impl Iterator<Item = DVec3> {
+    (0..p.len()).map(move |i| (p[(i + 1) % p.len()] - p[i]).normalize_or_zero())
+}
+
 /// Whether the shadows on an axis are more than `slack` from each other; no if the axis says nothing.
 #[inline(always)]
-fn gap_along(a: &[DVec3], b: &[DVec3], axis: DVec3, slack: f64) -> bool {
+fn parts(a: &[DVec3], b: &[DVec3], axis: DVec3, slack: f64) -> bool {
     let shadow = |p: &[DVec3]| {
         p.iter()
             .map(|p| p.dot(axis))
@@ -48,7 +56,7 @@ fn gap_along(a: &[DVec3], b: &[DVec3], axis: DVec3, slack: f64) -> bool {
     };
     let ((alo, ahi), (blo, bhi)) = (shadow(a), shadow(b));
     let gap = (alo - bhi).max(blo - ahi);
-    if gap <= 0.0 && slack >= 0.0 {
+    if gap <= 0.0 {
         return false;
     }
     // sides nearly parallel give a direction of round-off only
@@ -58,8 +66,12 @@ fn gap_along(a: &[DVec3], b: &[DVec3], axis: DVec3, slack: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::apart;
-    use glam::dvec3;
+    use super::Flat;
+    use glam::{DVec3, dvec3};
+
+    fn apart(a: &[DVec3], b: &[DVec3], slack: f64) -> bool {
+        super::apart(Flat::of(a), Flat::of(b), slack)
+    }
 
     #[test]
     fn crossing_touching_and_separate_triangles() {

@@ -6,7 +6,6 @@
 //! gets the builder's tree as it is.
 
 use glam::Vec3A;
-use obvhs::Boundable;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2, node::Bvh2Node};
@@ -21,12 +20,12 @@ const STEP: f32 = 1.0 / 4096.0;
 /// Most primitives of a leaf of a bundle; as the builder has them.
 const LEAF: u32 = 8;
 
-/// The tree over some primitives.
-pub fn hierarchy<T: Boundable + Sync>(primitives: &[T], params: BvhBuildParams) -> Bvh2 {
-    let boxes: Vec<Aabb> = primitives.par_iter().map(Boundable::aabb).collect();
-    let bundles = bundles(&boxes);
-    if bundles.len() == boxes.len() {
-        return build_bvh2(&boxes, params, &mut Default::default());
+/// The tree over some boxes.
+pub fn hierarchy(boxes: &[Aabb], params: BvhBuildParams) -> Bvh2 {
+    let bundles = if crowded(boxes) { bundles(boxes) } else { vec![] };
+    // a bundle for each box is none
+    if bundles.len() == boxes.len() || bundles.is_empty() {
+        return build_bvh2(boxes, params, &mut Default::default());
     }
     let hull = |bundle: &Vec<u32>| {
         let all = bundle.iter().map(|&i| boxes[i as usize]);
@@ -34,8 +33,25 @@ pub fn hierarchy<T: Boundable + Sync>(primitives: &[T], params: BvhBuildParams) 
     };
     let hulls: Vec<Aabb> = bundles.iter().map(hull).collect();
     let mut tree = build_bvh2(&hulls, params, &mut Default::default());
-    unpack(&mut tree, &bundles, &boxes);
+    unpack(&mut tree, &bundles, boxes);
     tree
+}
+
+/// Whether there may be a crowd: so it seems where very many keys of others fall together with those of
+/// one, too.
+fn crowded(boxes: &[Aabb]) -> bool {
+    let cells = boxes.len().max(1).next_power_of_two() * 2;
+    let cell = |b: &Aabb| {
+        let mix =
+            |h: u64, x: i64| (h ^ x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29);
+        key(b).into_iter().fold(0, mix) as usize & (cells - 1)
+    };
+    let all: Vec<usize> = boxes.par_iter().map(cell).collect();
+    let mut counts = vec![0u8; cells];
+    all.into_iter().any(|cell| {
+        counts[cell] += 1;
+        usize::from(counts[cell]) > CROWD
+    })
 }
 
 /// Crowds of boxes that are nearly the same, in the order of the first of each; all others by themselves.

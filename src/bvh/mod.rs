@@ -9,16 +9,18 @@ mod batch;
 mod contact;
 mod hierarchy;
 mod nearest;
+mod pairs;
 mod ray;
 mod rim;
 #[cfg(test)]
 mod tests;
 mod triangle;
+mod vector;
 mod wide;
 mod winding;
 
 pub use batch::Hit;
-pub use contact::{apart, gap};
+pub use contact::{Flat, apart, gap};
 pub use hierarchy::hierarchy;
 pub use nearest::Nearest;
 pub use ray::Exit;
@@ -27,7 +29,7 @@ pub use winding::Winding;
 
 use crate::num::Aabb;
 use glam::DVec3;
-use obvhs::{BvhBuildParams, triangle::Triangle};
+use obvhs::BvhBuildParams;
 use rayon::prelude::*;
 use triangle::Tri;
 use wide::Wide;
@@ -103,18 +105,17 @@ impl Bvh {
             return;
         }
         let blank = Node { bounds: Aabb::EMPTY, first: 0, count: 0 };
+        self.faces.reserve(triangles.len());
+        self.nodes.reserve(from.nodes.len());
         self.nodes.push(blank);
         let mut open = vec![(0u32, 0usize)];
         while let Some((source, place)) = open.pop() {
             let node = from.nodes[source as usize];
             if node.is_leaf() {
-                let first = self.corners.len() as u32;
-                for slot in node.first_index..node.first_index + node.prim_count {
-                    let face = from.primitive_indices[slot as usize];
-                    let corners = triangles[face as usize];
-                    self.corners.push(corners);
-                    self.faces.push(face);
-                }
+                let first = self.faces.len() as u32;
+                let slots =
+                    node.first_index as usize..(node.first_index + node.prim_count) as usize;
+                self.faces.extend(&from.primitive_indices[slots]);
                 self.nodes[place] = Node { first, count: node.prim_count, ..blank };
             } else {
                 let first = self.nodes.len();
@@ -124,18 +125,22 @@ impl Bvh {
                 open.push((node.first_index, first));
             }
         }
+        self.corners = self.faces.par_iter().map(|&face| triangles[face as usize]).collect();
     }
 
     /// Boxes from the leaves up.
     fn fit(&mut self) {
+        let corners = &self.corners;
+        self.nodes.par_iter_mut().filter(|node| node.count > 0).for_each(|node| {
+            let (first, count) = (node.first as usize, node.count as usize);
+            node.bounds = Aabb::of(corners[first..first + count].iter().flatten().copied());
+        });
         for i in (0..self.nodes.len()).rev() {
             let Node { first, count, .. } = self.nodes[i];
-            let (first, count) = (first as usize, count as usize);
-            self.nodes[i].bounds = if count > 0 {
-                Aabb::of(self.corners[first..first + count].iter().flatten().copied())
-            } else {
-                self.nodes[first].bounds.hull(self.nodes[first + 1].bounds)
-            };
+            if count == 0 {
+                let first = first as usize;
+                self.nodes[i].bounds = self.nodes[first].bounds.hull(self.nodes[first + 1].bounds);
+            }
         }
     }
 
@@ -152,9 +157,7 @@ fn shape(triangles: &[[DVec3; 3]], bounds: &Aabb) -> obvhs::bvh2::Bvh2 {
     }
     let scale = 1.0 / bounds.size().max_element().max(f64::MIN_POSITIVE);
     let unit = |p: DVec3| ((p - bounds.centre()) * scale).as_vec3a();
-    let small: Vec<_> = triangles
-        .iter()
-        .map(|t| Triangle { v0: unit(t[0]), v1: unit(t[1]), v2: unit(t[2]) })
-        .collect();
-    hierarchy(&small, BvhBuildParams::medium_build())
+    let own = |t: &[DVec3; 3]| obvhs::aabb::Aabb::from_points(&t.map(unit));
+    let boxes: Vec<_> = triangles.par_iter().map(own).collect();
+    hierarchy(&boxes, BvhBuildParams::medium_build())
 }

@@ -1,10 +1,8 @@
 use super::Bvh;
-use super::triangle::LANES;
 use super::wide::Open;
 use crate::num::Aabb;
 use fearless_simd::{Level, dispatch};
 use glam::DVec3;
-use std::ops::Range;
 
 /// The point of a triangle set nearest to a query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,27 +72,8 @@ impl Bvh {
         found
     }
 
-    /// Pairs of triangles whose boxes come within `reach` mm of each other, the lower index first:
-    /// those of the triangles in a range of slots with the ones of higher index.
-    pub fn close_pairs(&self, slots: Range<usize>, reach: f64) -> Vec<[u32; 2]> {
-        let open = &mut Open::with_capacity(64);
-        let of = |slot: usize| (self.faces[slot], Aabb::of(self.corners[slot]));
-        let mut pairs = vec![];
-        // neighbours in the tree share a walk
-        for start in slots.clone().step_by(LANES) {
-            let run: Vec<_> = (start..slots.end.min(start + LANES)).map(of).collect();
-            let whole = run.iter().fold(Aabb::EMPTY, |b, one| b.hull(one.1));
-            for slot in self.gather(&whole, reach, open) {
-                let (j, b) = of(slot as usize);
-                let near = run.iter().filter(|(i, a)| *i < j && gap2(a, &b) <= reach * reach);
-                pairs.extend(near.map(|&(i, _)| [i, j]));
-            }
-        }
-        pairs
-    }
-
     /// Slots of the packs within `reach` of a box.
-    fn gather(&self, b: &Aabb, reach: f64, open: &mut Open) -> Vec<u32> {
+    pub(super) fn gather(&self, b: &Aabb, reach: f64, open: &mut Open) -> Vec<u32> {
         let mut found = vec![];
         dispatch!(Level::new(), s => {
             self.wide.gather(s, b, reach, usize::MAX, open, &mut found)

@@ -4,55 +4,11 @@
 use super::Winding;
 use super::dipole::Dipole;
 use crate::bvh::Node;
-use crate::bvh::triangle::{LANES, Points};
+use crate::bvh::triangle::LANES;
+use crate::bvh::vector::Vec8;
 use fearless_simd::{Simd, SimdMask, f64x8, mask64x8, prelude::*};
 use glam::DVec3;
 use std::f64::consts::PI;
-
-/// Eight vectors.
-#[derive(Clone, Copy)]
-struct Vec8<S: Simd> {
-    x: f64x8<S>,
-    y: f64x8<S>,
-    z: f64x8<S>,
-}
-
-impl<S: Simd> Vec8<S> {
-    /// The points, the last one repeated.
-    #[inline(always)]
-    fn of(s: S, at: &[DVec3]) -> Self {
-        let Points { x, y, z } = Points::of(s, at);
-        Self { x, y, z }
-    }
-
-    /// A point less each of these.
-    #[inline(always)]
-    fn to(self, p: DVec3) -> Self {
-        let s = self.x.token();
-        let lane = |v| f64x8::splat(s, v);
-        Self { x: lane(p.x) - self.x, y: lane(p.y) - self.y, z: lane(p.z) - self.z }
-    }
-
-    #[inline(always)]
-    fn dot(self, o: Self) -> f64x8<S> {
-        self.x * o.x + self.y * o.y + self.z * o.z
-    }
-
-    /// With the same vector in all lanes.
-    #[inline(always)]
-    fn along(self, o: DVec3) -> f64x8<S> {
-        self.x * o.x + self.y * o.y + self.z * o.z
-    }
-
-    #[inline(always)]
-    fn cross(self, o: Self) -> Self {
-        Self {
-            x: self.y * o.z - o.y * self.z,
-            y: self.z * o.x - o.z * self.x,
-            z: self.x * o.y - o.x * self.y,
-        }
-    }
-}
 
 impl Dipole {
     /// 4 pi times the winding number seen from d = centre - q, |d|² = r2.

@@ -3,8 +3,8 @@
 
 use super::cut::{Class, Cuts, Cutter, Piece, Scale};
 use super::inside::Inside;
-use super::soup::{Sets, edges, sides};
-use crate::bvh::{Bvh, Winding, apart};
+use super::soup::{Sets, Sides};
+use crate::bvh::{Bvh, Flat, Winding, apart};
 use crate::job::{Cancelled, Job, check};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -65,6 +65,15 @@ struct Faces<'a> {
     scale: Scale,
 }
 
+/// Faces of one class, with what their sides tell.
+type Group = (Vec<u32>, Class, Trust);
+
+/// Whether some groups are all of so many faces, in their order, and all surface as they are.
+fn all_surface(groups: &[Group], faces: usize) -> bool {
+    groups.iter().all(|g| g.1 == Class::Surface)
+        && groups.iter().flat_map(|g| &g.0).copied().eq(0..faces as u32)
+}
+
 fn area(t: &[DVec3]) -> f64 {
     (1..t.len().saturating_sub(1))
         .map(|i| (t[i] - t[0]).cross(t[i + 1] - t[0]).length() * 0.5)
@@ -118,7 +127,13 @@ impl Surface {
         let all = Faces { faces, triangles, normals, inside, scale };
         let contacts = all.contacts(bvh, job)?;
         let mut surface = Self::default();
-        for (group, class, trust) in all.untouched(&contacts, job)? {
+        let untouched = all.untouched(&contacts, job)?;
+        if all_surface(&untouched, faces.len()) {
+            let trust = untouched.iter().flat_map(|(group, _, t)| group.iter().map(|_| *t));
+            let trust = trust.collect();
+            return Ok(Self { whole: true, triangles: all.triangles, trust, ..surface });
+        }
+        for (group, class, trust) in untouched {
             for f in group {
                 let t = &all.triangles[f as usize];
                 surface.add(t, class, trust);
@@ -208,9 +223,10 @@ impl Faces<'_> {
         let slack = self.scale.slack;
         let (t, u) = (&self.triangles[i], &self.triangles[j]);
         let (f, g) = (self.faces[i], self.faces[j]);
+        let flat = |i: usize| Flat(&self.triangles[i], self.normals[i]);
         let common = [0, 1, 2].map(|k| g.iter().position(|&v| v == f[k]));
         match common {
-            [None, None, None] => !apart(t, u, slack),
+            [None, None, None] => !apart(flat(i), flat(j), slack),
             [Some(_), Some(_), Some(_)] => true,
             [None, Some(_), Some(_)] => folded(t, 0, u, g, f, slack),
             [Some(_), None, Some(_)] => folded(t, 1, u, g, f, slack),
@@ -220,22 +236,20 @@ impl Faces<'_> {
                 let opposite = |t: &[DVec3; 3], k: usize| [t[(k + 1) % 3], t[(k + 2) % 3]];
                 let own = common.iter().position(Option::is_some).unwrap_or(0);
                 let other = k.or(l).or(m).unwrap_or(0);
-                !apart(&opposite(t, own), u, slack) || !apart(&opposite(u, other), t, slack)
+                let meets =
+                    |side: &[DVec3], i: usize| !apart(Flat(side, DVec3::ZERO), flat(i), slack);
+                meets(&opposite(t, own), j) || meets(&opposite(u, other), i)
             }
         }
     }
 
     /// Faces without contacts, by patches of one class each, with their trust.
-    fn untouched(
-        &self,
-        contacts: &[Vec<u32>],
-        job: &dyn Job,
-    ) -> Result<Vec<(Vec<u32>, Class, Trust)>, Cancelled> {
+    fn untouched(&self, contacts: &[Vec<u32>], job: &dyn Job) -> Result<Vec<Group>, Cancelled> {
         check(job)?;
         let free =
             |f: u32| contacts[f as usize].is_empty() && self.normals[f as usize] != DVec3::ZERO;
         let all: Vec<u32> = (0..self.faces.len() as u32).filter(|&f| free(f)).collect();
-        let alone = |faces: &[u32]| -> Vec<(Vec<u32>, Class, Trust)> {
+        let alone = |faces: &[u32]| -> Vec<Group> {
             let known = self.alone(faces);
             faces.iter().zip(known).map(|(&f, (class, trust))| (vec![f], class, trust)).collect()
         };
@@ -243,14 +257,14 @@ impl Faces<'_> {
             // the winding number varies along an open shell
             return Ok(all.par_chunks(GROUP).flat_map_iter(alone).collect());
         }
-        let sides = sides(self.faces);
+        let sides = Sides::of(self.faces);
         let mut sets = Sets::new(self.faces.len());
-        for edge in edges(&sides) {
+        for (_, edge) in sides.edges() {
             if let [x, y] = edge
-                && free(x.face)
-                && free(y.face)
+                && free(x.face())
+                && free(y.face())
             {
-                sets.join(x.face, y.face);
+                sets.join(x.face(), y.face());
             }
         }
         let mut roots: Vec<(u32, u32)> = all.into_iter().map(|f| (sets.find(f), f)).collect();

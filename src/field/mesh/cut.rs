@@ -1,6 +1,6 @@
 //! A face cut along the faces that touch it, until each piece is surface, or is not.
 
-use crate::bvh::apart;
+use crate::bvh::{Flat, apart};
 use glam::DVec3;
 
 /// What lies on the two sides of a piece of a face.
@@ -185,8 +185,8 @@ impl<'a> Cutter<'a> {
     /// Cuts a part along those of the contacts that touch it: the whole face is touched by all.
     fn cut(&mut self, corners: Vec<DVec3>, contacts: &[u32], whole: bool, depth: u32) {
         self.spent += contacts.len();
-        let (scale, triangles) = (self.scale, self.triangles);
-        let near = |&b: &u32| whole || !apart(&corners, &triangles[b as usize], scale.slack);
+        let (scale, own) = (self.scale, Flat::of(&corners));
+        let near = |&b: &u32| whole || !apart(own, self.flat(b), scale.slack);
         // a plane is had for less than it is told what is near
         let across = |&b: &u32| Some(self.plane(&corners, b)).flatten().filter(|_| near(&b));
         let mut planes = contacts.iter().filter_map(across);
@@ -206,6 +206,11 @@ impl<'a> Cutter<'a> {
         self.parts.push(Part { corners, cut: true, doubtful: false });
         self.cut(front, &near, false, depth - 1);
         self.cut(back, &near, false, depth - 1);
+    }
+
+    /// A face as it is.
+    fn flat(&self, b: u32) -> Flat<'a> {
+        Flat(&self.triangles[b as usize], self.normals[b as usize])
     }
 
     fn leaf(&mut self, corners: Vec<DVec3>, doubtful: bool) {

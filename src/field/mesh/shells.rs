@@ -1,7 +1,7 @@
 //! Faces joined into shells, oriented alike within each, and their rims.
 
 use super::seams;
-use super::soup::{Sets, Side, edges, sides};
+use super::soup::{Sets, Sides};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -33,7 +33,7 @@ impl Shells {
     /// (by area) to agree with the rest, and unites open shells that close each other. Rims within
     /// `tolerance` mm of each other count as one.
     pub(super) fn new(points: &[DVec3], faces: &mut [[u32; 3]], tolerance: f64) -> Self {
-        let sides = sides(faces);
+        let sides = Sides::of(faces);
         let (groups, mut flipped_faces) = orient(points, faces, &sides);
         let mut shell_of = vec![0u32; faces.len()];
         for (i, group) in groups.iter().enumerate() {
@@ -90,18 +90,18 @@ pub(super) fn rim(net: &Net) -> Vec<([u32; 2], u32)> {
 
 /// Groups of faces joined over two-face edges, each turned to one orientation; and how many faces
 /// were turned.
-fn orient(points: &[DVec3], faces: &mut [[u32; 3]], sides: &[Side]) -> (Vec<Vec<u32>>, usize) {
+fn orient(points: &[DVec3], faces: &mut [[u32; 3]], sides: &Sides) -> (Vec<Vec<u32>>, usize) {
     // neighbours over the three sides, and whether they run along them in the same direction
     let mut next = vec![[None; 3]; faces.len()];
     let mut join = |x: u32, y: u32, clash| {
         let free = next[x as usize].iter_mut().find(|n| n.is_none());
         free.into_iter().for_each(|n| *n = Some((y, clash)));
     };
-    for edge in edges(sides) {
+    for (_, edge) in sides.edges() {
         if let [x, y] = edge {
-            let clash = x.forward == y.forward;
-            join(x.face, y.face, clash);
-            join(y.face, x.face, clash);
+            let clash = x.forward() == y.forward();
+            join(x.face(), y.face(), clash);
+            join(y.face(), x.face(), clash);
         }
     }
     let mut turned: Vec<Option<bool>> = vec![None; faces.len()];
@@ -141,19 +141,18 @@ fn orient(points: &[DVec3], faces: &mut [[u32; 3]], sides: &[Side]) -> (Vec<Vec<
 fn nets(
     points: &[DVec3],
     faces: &[[u32; 3]],
-    sides: &[Side],
+    sides: &Sides,
     shell_of: &[u32],
     shells: usize,
     tolerance: f64,
 ) -> Vec<Net> {
     let mut raw: Vec<(u32, u32, u32, i32)> = vec![];
-    for edge in edges(sides) {
+    for ([a, b], edge) in sides.edges() {
         let start = raw.len();
-        let [a, b] = edge[0].ends();
         for s in edge {
-            let shell = shell_of[s.face as usize];
+            let shell = shell_of[s.face() as usize];
             // faces may have been turned since
-            let f = faces[s.face as usize];
+            let f = faces[s.face() as usize];
             let forward = (0..3).any(|i| f[i] == a && f[(i + 1) % 3] == b);
             let n = if forward { 1 } else { -1 };
             match raw[start..].iter_mut().find(|r| r.0 == shell) {

@@ -3,7 +3,6 @@
 use super::MeshFieldError;
 use crate::mesh::{TriMesh, twins};
 use glam::DVec3;
-use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Faces over points that differ from each other.
@@ -19,42 +18,77 @@ pub(super) struct Soup {
     pub degenerate: usize,
 }
 
-/// One side of a face. Sides compare by their ends, then by face.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Side {
-    /// The lower end and the higher one, in one number.
-    edge: u64,
-    pub face: u32,
-    /// Whether the face runs from the lower end to the higher one.
-    pub forward: bool,
-}
+/// One side of a face, among those from the same lower end: its higher end, its face, and whether the
+/// face runs from the lower end to the higher one, in one number. Sides compare in that order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Side(u64);
 
 impl Side {
-    /// The side from `p` to `q`.
-    fn new(p: u32, q: u32, face: u32) -> Self {
-        Self { edge: u64::from(p.min(q)) << 32 | u64::from(p.max(q)), face, forward: p < q }
+    fn high(self) -> u32 {
+        (self.0 >> 32) as u32
     }
 
-    /// Its ends, in rising order.
-    pub(super) fn ends(self) -> [u32; 2] {
-        [(self.edge >> 32) as u32, self.edge as u32]
+    pub(super) fn face(self) -> u32 {
+        self.0 as u32 >> 1
+    }
+
+    /// Whether the face runs from the lower end to the higher one.
+    pub(super) fn forward(self) -> bool {
+        self.0 & 1 == 1
     }
 }
 
-/// All sides of all faces, sorted so that the sides of one edge are neighbours.
-pub(super) fn sides(faces: &[[u32; 3]]) -> Vec<Side> {
-    let mut out = Vec::with_capacity(faces.len() * 3);
-    for (face, &[a, b, c]) in faces.iter().enumerate() {
-        let face = face as u32;
-        out.extend([Side::new(a, b, face), Side::new(b, c, face), Side::new(c, a, face)]);
-    }
-    out.par_sort_unstable();
-    out
+/// All sides of all faces, those of one edge together.
+pub(super) struct Sides {
+    /// Where the sides from each point to higher ones start, and the end of all.
+    starts: Vec<usize>,
+    sides: Vec<Side>,
 }
 
-/// Runs of sides that share an edge.
-pub(super) fn edges(sides: &[Side]) -> impl Iterator<Item = &[Side]> {
-    sides.chunk_by(|x, y| x.edge == y.edge)
+impl Sides {
+    pub(super) fn of(faces: &[[u32; 3]]) -> Self {
+        let side = |(i, &f): (usize, &[u32; 3])| {
+            [0, 1, 2].map(|k| {
+                let (p, q) = (f[k], f[(k + 1) % 3]);
+                let own = (i as u64) << 1 | u64::from(p < q);
+                (p.min(q), Side(u64::from(p.max(q)) << 32 | own))
+            })
+        };
+        let (starts, mut sides) = sorted(faces.iter().enumerate().flat_map(side), faces);
+        starts.windows(2).for_each(|w| sides[w[0]..w[1]].sort_unstable());
+        Self { starts, sides }
+    }
+
+    /// The ends of each edge in rising order, with its sides, in order.
+    pub(super) fn edges(&self) -> impl Iterator<Item = ([u32; 2], &[Side])> {
+        self.starts.windows(2).enumerate().flat_map(|(low, w)| {
+            let same = self.sides[w[0]..w[1]].chunk_by(|x, y| x.high() == y.high());
+            same.map(move |sides| ([low as u32, sides[0].high()], sides))
+        })
+    }
+}
+
+/// Things by the points of the faces that they are at: where those at each point start, and the end of
+/// all; the things, those at one point in their order.
+fn sorted<T: Copy + Default>(
+    things: impl Iterator<Item = (u32, T)> + Clone,
+    faces: &[[u32; 3]],
+) -> (Vec<usize>, Vec<T>) {
+    let points = faces.iter().flatten().max().map_or(0, |&v| v as usize + 1);
+    // room for the end of each point's things is two places on, so that it is its start in the end
+    let mut starts = vec![0; points + 2];
+    things.clone().for_each(|(v, _)| starts[v as usize + 2] += 1);
+    for v in 2..starts.len() {
+        starts[v] += starts[v - 1];
+    }
+    let mut out = vec![T::default(); starts[points + 1]];
+    for (v, thing) in things {
+        let place = &mut starts[v as usize + 1];
+        out[*place] = thing;
+        *place += 1;
+    }
+    starts.pop();
+    (starts, out)
 }
 
 /// Disjoint sets of small numbers.
@@ -134,20 +168,30 @@ impl Soup {
     /// Keeps the first of every set of faces with the same corners; what lay there in both
     /// directions is returned instead.
     fn single(&mut self, welded: &[[u32; 3]]) -> Vec<[u32; 3]> {
+        // by the lowest corner: the other two, the face, and which way round it runs
         let key = |(i, f): (usize, &[u32; 3])| {
-            let mut corners = *f;
-            corners.sort_unstable();
-            let first = f.iter().position(|&v| v == corners[0]).unwrap_or(0);
-            (corners, i as u32, f[(first + 1) % 3] == corners[1])
+            let [a, b, c] = *f;
+            let turned = if a < b && a < c {
+                [a, b, c]
+            } else if b < c {
+                [b, c, a]
+            } else {
+                [c, a, b]
+            };
+            let [low, p, q] = turned;
+            (low, (u64::from(p.min(q)) << 32 | u64::from(p.max(q)), i as u32, p < q))
         };
-        let mut keys: Vec<_> = welded.par_iter().enumerate().map(key).collect();
-        keys.par_sort_unstable();
+        let (starts, mut keys) = sorted(welded.iter().enumerate().map(key), welded);
         // what becomes of a face: the first of its corners stays, single or double
         let mut kept = vec![None; welded.len()];
-        for same in keys.chunk_by(|x, y| x.0 == y.0) {
-            let both = same.iter().any(|k| k.2) && same.iter().any(|k| !k.2);
-            kept[same[0].1 as usize] = Some(both);
-            self.duplicates += same.len() - 1;
+        for w in starts.windows(2) {
+            let keys = &mut keys[w[0]..w[1]];
+            keys.sort_unstable();
+            for same in keys.chunk_by(|x, y| x.0 == y.0) {
+                let both = same.iter().any(|k| k.2) && same.iter().any(|k| !k.2);
+                kept[same[0].1 as usize] = Some(both);
+                self.duplicates += same.len() - 1;
+            }
         }
         let mut double = vec![];
         for (f, kept) in welded.iter().zip(kept) {
@@ -168,21 +212,21 @@ impl Soup {
         }
         let ours = self.faces.len() as u32;
         let all: Vec<_> = self.faces.iter().chain(&double).copied().collect();
-        let sides = sides(&all);
+        let sides = Sides::of(&all);
         let mut patches = Sets::new(all.len());
-        for edge in edges(&sides) {
-            let mut doubled = edge.iter().filter(|s| s.face >= ours).map(|s| s.face);
+        for (_, edge) in sides.edges() {
+            let mut doubled = edge.iter().map(|s| s.face()).filter(|&f| f >= ours);
             if let (Some(x), Some(y), None) = (doubled.next(), doubled.next(), doubled.next()) {
                 patches.join(x, y);
             }
         }
         // per patch: border edges that would close a gap, less those that would not
         let mut votes: HashMap<u32, i64> = HashMap::new();
-        for edge in edges(&sides) {
+        for (_, edge) in sides.edges() {
             let mut own: HashMap<u32, usize> = HashMap::new();
-            let rest = edge.iter().filter(|s| s.face < ours).count();
-            for s in edge.iter().filter(|s| s.face >= ours) {
-                *own.entry(patches.find(s.face)).or_default() += 1;
+            let rest = edge.iter().filter(|s| s.face() < ours).count();
+            for s in edge.iter().filter(|s| s.face() >= ours) {
+                *own.entry(patches.find(s.face())).or_default() += 1;
             }
             for (patch, n) in own {
                 let vote = if n % 2 == 0 {
