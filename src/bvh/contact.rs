@@ -1,3 +1,7 @@
+use super::pairs::middle;
+use super::triangle::LANES;
+use super::vector::Vec8;
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 /// Distance from a point to one triangle, mm; to a segment or point where it has no area.
@@ -40,6 +44,91 @@ fn normal(p: &[DVec3]) -> DVec3 {
         .map(|i| (p[i] - o).cross(p[(i + 1) % p.len()] - o))
         .sum::<DVec3>()
         .normalize_or_zero()
+}
+
+/// A polygon, to be told [`apart`] from triangles eight at a time, with the same answers.
+pub struct Outline<'a> {
+    corners: &'a [DVec3],
+    normal: DVec3,
+    middle: DVec3,
+    sides: Vec<DVec3>,
+    slack: f64,
+}
+
+impl<'a> Outline<'a> {
+    /// Triangles that [`Outline::near`] takes at once.
+    pub const MOST: usize = LANES;
+
+    /// Of at least one point.
+    pub fn new(corners: &'a [DVec3], slack: f64) -> Self {
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        Self { corners, normal: normal(corners), middle, sides: sides(corners).collect(), slack }
+    }
+
+    /// Which of up to eight triangles are not apart from it, a bit for each.
+    pub fn near(&self, triangles: &[(&[DVec3; 3], DVec3)]) -> u8 {
+        if triangles.is_empty() {
+            return 0;
+        }
+        let of = |i: usize| {
+            let at: [DVec3; LANES] = std::array::from_fn(|lane| match triangles.get(lane) {
+                Some((t, n)) => {
+                    if i < 3 {
+                        t[i]
+                    } else {
+                        *n
+                    }
+                }
+                None => DVec3::ZERO,
+            });
+            at
+        };
+        let lanes = [0, 1, 2, 3].map(of);
+        let all = u8::MAX >> (LANES - triangles.len().min(LANES));
+        dispatch!(Level::new(), s => self.near_of(s, &lanes, all))
+    }
+
+    /// The same of those whose bit is set in `near`, from their corners and normals.
+    #[inline(always)]
+    fn near_of<S: Simd>(&self, s: S, [a, b, c, n]: &[[DVec3; LANES]; 4], mut near: u8) -> u8 {
+        let triangles = [Vec8::of(s, a), Vec8::of(s, b), Vec8::of(s, c)];
+        near &= !self.parted(&triangles, middle(&triangles).less(Vec8::splat(s, self.middle)));
+        if near == 0 {
+            return 0;
+        }
+        let (own, normals) = (Vec8::splat(s, self.normal), Vec8::of(s, n));
+        near &= !self.parted(&triangles, own);
+        near &= !self.parted(&triangles, normals);
+        let [a, b, c] = triangles;
+        let sides = [b.less(a).unit(), c.less(b).unit(), a.less(c).unit()];
+        for side in sides {
+            near &= !self.parted(&triangles, side.cross(normals));
+        }
+        for &side in &self.sides {
+            if near == 0 {
+                return 0;
+            }
+            let side = Vec8::splat(s, side);
+            near &= !self.parted(&triangles, side.cross(own));
+            for other in sides {
+                near &= !self.parted(&triangles, side.cross(other));
+            }
+        }
+        near
+    }
+
+    #[inline(always)]
+    fn parted<S: Simd>(&self, triangles: &[Vec8<S>; 3], axis: Vec8<S>) -> u8 {
+        let s = axis.x.token();
+        let mut lo = f64x8::splat(s, f64::INFINITY);
+        let mut hi = f64x8::splat(s, f64::NEG_INFINITY);
+        for &p in self.corners {
+            let height = Vec8::splat(s, p).dot(axis);
+            lo = lo.min(height);
+            hi = hi.max(height);
+        }
+        axis.parts([lo, hi], axis.shadow(triangles), self.slack)
+    }
 }
 
 fn sides(p: &[DVec3]) -> impl Iterator<Item = DVec3> {

@@ -20,7 +20,7 @@ mod wide;
 mod winding;
 
 pub use batch::Hit;
-pub use contact::{Flat, apart, gap};
+pub use contact::{Flat, Outline, apart, gap};
 pub use hierarchy::hierarchy;
 pub use nearest::Nearest;
 pub use ray::Exit;

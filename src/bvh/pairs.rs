@@ -52,7 +52,7 @@ impl<'a> Run<'a> {
         let (lo, hi) = (Vec8::of(s, &self.lo), Vec8::of(s, &self.hi));
         let [a, b, c] = &self.corners;
         let own = [Vec8::of(s, a), Vec8::of(s, b), Vec8::of(s, c)];
-        let middles = middle(own);
+        let middles = middle(&own);
         let order = f64x8::simd_from(s, self.order);
         for &slot in slots {
             let face = bvh.faces[slot as usize];
@@ -69,7 +69,8 @@ impl<'a> Run<'a> {
             }
             let [a, b, c] = corners;
             let other = [Vec8::splat(s, *a), Vec8::splat(s, *b), Vec8::splat(s, *c)];
-            near &= !parted(own, other, middle(other).less(middles), reach);
+            let axis = middle(&other).less(middles);
+            near &= !u64::from(axis.parts(axis.shadow(&own), axis.shadow(&other), reach));
             while near != 0 {
                 let lane = near.trailing_zeros() as usize;
                 near &= near - 1;
@@ -80,31 +81,13 @@ impl<'a> Run<'a> {
 }
 
 #[inline(always)]
-fn middle<S: Simd>([a, b, c]: [Vec8<S>; 3]) -> Vec8<S> {
+pub(super) fn middle<S: Simd>([a, b, c]: &[Vec8<S>; 3]) -> Vec8<S> {
     let three = f64x8::splat(a.x.token(), 3.0);
     Vec8 {
         x: (a.x + b.x + c.x) / three,
         y: (a.y + b.y + c.y) / three,
         z: (a.z + b.z + c.z) / three,
     }
-}
-
-/// Least and greatest height along an axis.
-#[inline(always)]
-fn shadow<S: Simd>([a, b, c]: [Vec8<S>; 3], axis: Vec8<S>) -> [f64x8<S>; 2] {
-    let (a, b, c) = (a.dot(axis), b.dot(axis), c.dot(axis));
-    [a.min(b).min(c), a.max(b).max(c)]
-}
-
-/// In which lanes the axis alone tells that [`apart`] holds.
-#[inline(always)]
-fn parted<S: Simd>(a: [Vec8<S>; 3], b: [Vec8<S>; 3], axis: Vec8<S>, slack: f64) -> u64 {
-    let s = axis.x.token();
-    let ([alo, ahi], [blo, bhi]) = (shadow(a, axis), shadow(b, axis));
-    let gap = (alo - bhi).max(blo - ahi);
-    let length = axis.dot(axis).sqrt();
-    let told = length.simd_gt(f64x8::splat(s, 1e-9));
-    (told & (gap / length).simd_gt(f64x8::splat(s, slack))).to_bitmask()
 }
 
 impl Bvh {

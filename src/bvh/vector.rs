@@ -1,7 +1,7 @@
 //! Vectors of three numbers, eight at a time. The arithmetic is `glam`'s, operation by operation.
 
 use super::triangle::Points;
-use fearless_simd::{Simd, f64x8, prelude::*};
+use fearless_simd::{Simd, SimdMask, f64x8, prelude::*};
 use glam::DVec3;
 
 /// Eight vectors.
@@ -59,5 +59,44 @@ impl<S: Simd> Vec8<S> {
             y: self.z * o.x - o.z * self.x,
             z: self.x * o.y - o.x * self.y,
         }
+    }
+
+    #[inline(always)]
+    pub(super) fn times(self, k: f64x8<S>) -> Self {
+        Self { x: self.x * k, y: self.y * k, z: self.z * k }
+    }
+
+    /// Of unit length, or zero where it cannot be.
+    #[inline(always)]
+    pub(super) fn unit(self) -> Self {
+        let s = self.x.token();
+        let (zero, one) = (f64x8::splat(s, 0.0), f64x8::splat(s, 1.0));
+        let rate = one / self.dot(self).sqrt();
+        let fine = rate.simd_gt(zero) & rate.simd_lt(f64x8::splat(s, f64::INFINITY));
+        let scaled = self.times(rate);
+        let or_zero = |v: f64x8<S>| fine.select(v, zero);
+        Self { x: or_zero(scaled.x), y: or_zero(scaled.y), z: or_zero(scaled.z) }
+    }
+
+    /// Least and greatest height of some points along this axis.
+    #[inline(always)]
+    pub(super) fn shadow(self, points: &[Self; 3]) -> [f64x8<S>; 2] {
+        let [a, b, c] = points;
+        let (a, b, c) = (a.dot(self), b.dot(self), c.dot(self));
+        [a.min(b).min(c), a.max(b).max(c)]
+    }
+
+    /// In which lanes shadows on this axis are more than `slack` from each other, which is not negative,
+    /// a bit for each; in none where the axis has no direction but round-off.
+    #[inline(always)]
+    pub(super) fn parts(self, [a, b]: [f64x8<S>; 2], [c, d]: [f64x8<S>; 2], slack: f64) -> u8 {
+        let lane = |v| f64x8::splat(self.x.token(), v);
+        let gap = (a - d).max(c - b);
+        if !gap.simd_gt(lane(0.0)).any_true() {
+            return 0;
+        }
+        let length = self.dot(self).sqrt();
+        let told = length.simd_gt(lane(1e-9)) & (gap / length).simd_gt(lane(slack));
+        told.to_bitmask() as u8
     }
 }

@@ -3,7 +3,6 @@
 use crate::bvh::{Bvh, Node};
 use crate::num::Aabb;
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
 
 /// Moments of the area vectors about the centre of a node, ready for evaluation.
 #[derive(Clone, Copy, Debug, Default)]
@@ -101,20 +100,73 @@ impl Moments {
     }
 }
 
+/// Nodes of a part of the tree that one thread sums up.
+const PART: usize = 4096;
+/// Levels below which the tree is not divided any more.
+const DEPTH: u32 = 64;
+
+/// The dipole of every node.
 pub(super) fn dipoles(bvh: &Bvh) -> Vec<Dipole> {
-    let leaf = |node: &Node| {
-        if node.count == 0 {
-            return Moments::at(DVec3::ZERO);
-        }
-        let (first, count) = (node.first as usize, node.count as usize);
-        of_triangles(&bvh.corners[first..first + count], &node.bounds)
+    let Some(root) = bvh.nodes.first() else {
+        return vec![];
     };
-    let mut moments: Vec<Moments> = bvh.nodes.par_iter().map(leaf).collect();
-    for (i, node) in bvh.nodes.iter().enumerate().rev().filter(|(_, node)| node.count == 0) {
-        let first = node.first as usize;
-        moments[i] = of_children(&moments[first], &moments[first + 1], &node.bounds);
+    let mut all = vec![Dipole::default(); bvh.nodes.len()];
+    let (own, below) = all.split_at_mut(1);
+    own[0] = node(bvh, root, below, DEPTH).dipole(&root.bounds);
+    all
+}
+
+/// The moments of a node; `below` gets the dipoles of all under it.
+fn node(bvh: &Bvh, node: &Node, below: &mut [Dipole], depth: u32) -> Moments {
+    let first = node.first as usize;
+    if node.count > 0 {
+        return of_triangles(&bvh.corners[first..first + node.count as usize], &node.bounds);
     }
-    bvh.nodes.par_iter().zip(&moments).map(|(n, m)| m.dipole(&n.bounds)).collect()
+    let [a, b] = pair(bvh, first, below, depth);
+    of_children(&a, &b, &node.bounds)
+}
+
+/// The moments of the two nodes from `at`. The tree is laid out so that what is under the first one
+/// follows them, then what is under the second.
+fn pair(bvh: &Bvh, at: usize, out: &mut [Dipole], depth: u32) -> [Moments; 2] {
+    if out.len() < PART || depth == 0 {
+        return one_by_one(bvh, at, out);
+    }
+    let (a, b) = (&bvh.nodes[at], &bvh.nodes[at + 1]);
+    let (own, below) = out.split_at_mut(2);
+    let second = if b.count > 0 { below.len() } else { b.first as usize - (at + 2) };
+    let (under_a, under_b) = below.split_at_mut(second);
+    let (m, n) =
+        rayon::join(|| node(bvh, a, under_a, depth - 1), || node(bvh, b, under_b, depth - 1));
+    own[0] = m.dipole(&a.bounds);
+    own[1] = n.dipole(&b.bounds);
+    [m, n]
+}
+
+/// The same from the last pair up to the first, without as much room as there are nodes.
+fn one_by_one(bvh: &Bvh, at: usize, out: &mut [Dipole]) -> [Moments; 2] {
+    let mut open: Vec<[Moments; 2]> = vec![];
+    for (i, own) in out.chunks_exact_mut(2).enumerate().rev() {
+        // what is under the first node has come last
+        let both = [0, 1].map(|k| {
+            let node = &bvh.nodes[at + 2 * i + k];
+            let first = node.first as usize;
+            if node.count > 0 {
+                return of_triangles(
+                    &bvh.corners[first..first + node.count as usize],
+                    &node.bounds,
+                );
+            }
+            let none = Moments::at(DVec3::ZERO);
+            let [a, b] = open.pop().unwrap_or([none; 2]);
+            of_children(&a, &b, &node.bounds)
+        });
+        for k in 0..2 {
+            own[k] = both[k].dipole(&bvh.nodes[at + 2 * i + k].bounds);
+        }
+        open.push(both);
+    }
+    open.pop().unwrap_or([Moments::at(DVec3::ZERO); 2])
 }
 
 fn of_triangles(triangles: &[[DVec3; 3]], bounds: &Aabb) -> Moments {

@@ -156,11 +156,13 @@ impl<'a> Work<'a> {
             closed.iter().chain(&open).flat_map(|s| s.faces.iter().copied()).collect();
         let faces: Vec<_> = used.iter().map(|&f| self.soup.faces[f as usize]).collect();
         let triangles: Vec<_> = faces.iter().map(|f| self.corners(f)).collect();
-        let all = Arc::new(Bvh::new(&triangles));
-        let inside = match (&closed[..], &open[..]) {
-            ([], _) => Inside::over(&all, &self.rim(&open), false),
-            (_, []) => Inside::over(&all, &[], true),
-            _ => self.inside(&closed, &open),
+        let tree = || Arc::new(Bvh::new(&triangles));
+        let (all, inside) = if closed.is_empty() || open.is_empty() {
+            let all = tree();
+            let inside = Inside::over(&all, &self.rim(&open), !closed.is_empty());
+            (all, inside)
+        } else {
+            rayon::join(tree, || self.inside(&closed, &open))
         };
         let surface = Surface::new(triangles, &faces, &all, &inside, self.scale, job)?;
         let mut sheets = self.sheets(&inside);

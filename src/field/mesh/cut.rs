@@ -1,6 +1,6 @@
 //! A face cut along the faces that touch it, until each piece is surface, or is not.
 
-use crate::bvh::{Flat, apart};
+use crate::bvh::Outline;
 use glam::DVec3;
 
 /// What lies on the two sides of a piece of a face.
@@ -185,32 +185,38 @@ impl<'a> Cutter<'a> {
     /// Cuts a part along those of the contacts that touch it: the whole face is touched by all.
     fn cut(&mut self, corners: Vec<DVec3>, contacts: &[u32], whole: bool, depth: u32) {
         self.spent += contacts.len();
-        let (scale, own) = (self.scale, Flat::of(&corners));
-        let near = |&b: &u32| whole || !apart(own, self.flat(b), scale.slack);
+        let outline = Outline::new(&corners, self.scale.slack);
+        let near = |some: &[u32]| if whole { some.to_vec() } else { self.near(&outline, some) };
         // a plane is had for less than it is told what is near
-        let across = |&b: &u32| Some(self.plane(&corners, b)).flatten().filter(|_| near(&b));
-        let mut planes = contacts.iter().filter_map(across);
+        let plane = |&b: &u32| Some((b, self.plane(&corners, b)?));
+        let across: Vec<(u32, Plane)> = contacts.iter().filter_map(plane).collect();
+        let faces: Vec<u32> = across.iter().map(|a| a.0).collect();
+        let mut planes = faces.chunks(Outline::MOST).flat_map(near);
         let Some(first) = planes.next() else {
             return self.leaf(corners, false);
         };
         let (size, halving) = halving(&corners);
-        if depth == 0 || self.spent > self.budget || size < scale.floor {
+        if depth == 0 || self.spent > self.budget || size < self.scale.floor {
             return self.leaf(corners, true);
         }
-        let crowded = contacts.len() > CROWD && planes.nth(CROWD - 1).is_some();
+        let first = across.iter().find(|a| a.0 == first).map_or(halving, |a| a.1);
+        let crowded = across.len() > CROWD && planes.nth(CROWD - 1).is_some();
         let [front, back] = if crowded { halving } else { first }.split(&corners);
         if front.len() < 3 || back.len() < 3 {
             return self.leaf(corners, true);
         }
-        let near: Vec<u32> = contacts.iter().filter(|b| near(b)).copied().collect();
+        let near: Vec<u32> = contacts.chunks(Outline::MOST).flat_map(near).collect();
         self.parts.push(Part { corners, cut: true, doubtful: false });
         self.cut(front, &near, false, depth - 1);
         self.cut(back, &near, false, depth - 1);
     }
 
-    /// A face as it is.
-    fn flat(&self, b: u32) -> Flat<'a> {
-        Flat(&self.triangles[b as usize], self.normals[b as usize])
+    /// Those of some faces that touch a part.
+    fn near(&self, outline: &Outline, some: &[u32]) -> Vec<u32> {
+        let flat = |&b: &u32| (&self.triangles[b as usize], self.normals[b as usize]);
+        let bits = outline.near(&some.iter().map(flat).collect::<Vec<_>>());
+        let near = some.iter().enumerate().filter(|&(i, _)| bits >> i & 1 == 1);
+        near.map(|(_, &b)| b).collect()
     }
 
     fn leaf(&mut self, corners: Vec<DVec3>, doubtful: bool) {

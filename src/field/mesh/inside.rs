@@ -27,7 +27,8 @@ impl Inside {
         open: &[[DVec3; 3]],
         rim: &[([DVec3; 2], u32)],
     ) -> Self {
-        Self::of(Winding::new(closed), Winding::new(open), rim)
+        let (closed, open) = rayon::join(|| Winding::new(closed), || Winding::new(open));
+        Self::of(closed, open, rim)
     }
 
     /// From the tree over all faces, which are either those of closed shells or those of open ones.

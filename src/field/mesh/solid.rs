@@ -52,8 +52,9 @@ impl Solid {
     pub(super) fn new(surface: Surface, inside: Inside, blur: f64, all: Arc<Bvh>) -> Self {
         let touch = 1e-12 * inside.bounds().size().length();
         let Surface { whole, triangles, trust, ghosts, culled, .. } = surface;
-        let [ghosts, culled] = [ghosts, culled].map(|t| Bvh::new(&t));
-        let surface = if whole { all } else { Arc::new(Bvh::new(&triangles)) };
+        let rest = || rayon::join(|| Bvh::new(&ghosts), || Bvh::new(&culled));
+        let own = || if whole { all } else { Arc::new(Bvh::new(&triangles)) };
+        let (surface, (ghosts, culled)) = rayon::join(own, rest);
         Self { surface, trust, ghosts, culled, inside, touch, blur }
     }
 
