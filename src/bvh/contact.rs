@@ -148,14 +148,19 @@ fn parts(a: &[DVec3], b: &[DVec3], axis: DVec3, slack: f64) -> bool {
     if gap <= 0.0 {
         return false;
     }
+    // most are far enough beyond doubt, and need no root
+    let length2 = axis.length_squared();
+    if length2 > 1e-16 && gap * gap > slack * slack * length2 * (1.0 + 1e-9) {
+        return true;
+    }
     // sides nearly parallel give a direction of round-off only
-    let length = axis.length();
+    let length = length2.sqrt();
     length > 1e-9 && gap / length > slack
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Flat;
+    use super::{Flat, Outline};
     use glam::{DVec3, dvec3};
 
     fn apart(a: &[DVec3], b: &[DVec3], slack: f64) -> bool {
@@ -178,5 +183,47 @@ mod tests {
         assert!(!apart(&flat, &overlapping, 1e-9));
         assert!(!apart(&flat, &[dvec3(1.0, 1.0, -1.0), dvec3(1.0, 1.0, 1.0)], 0.0));
         assert!(apart(&flat, &[dvec3(3.0, 3.0, -1.0), dvec3(3.0, 3.0, 1.0)], 0.1));
+    }
+
+    /// Triangles in all positions to each other: far, near, touching, crossing, thin and without area.
+    fn some(n: u32) -> impl Iterator<Item = [DVec3; 3]> {
+        let at = |k: u32| {
+            let x = f64::from(k) * 0.754_877_666;
+            dvec3(x.fract(), (x * 1.3247).fract(), (x * 1.7549).fract())
+        };
+        (0..n).map(move |i| {
+            let (o, size) = (at(i) * 3.0, [2.0, 0.5, 1e-3][i as usize % 3]);
+            let [a, b, c] = [1, 2, 3].map(|k| o + (at(7 * i + k) - 0.5) * size);
+            match i % 11 {
+                0 => [a, b, b],
+                1 => [a, a, a],
+                2 => [a, b, c].map(|p| dvec3(p.x, p.y, 1.0)),
+                3 => [a, b, c].map(DVec3::round),
+                _ => [a, b, c],
+            }
+        })
+    }
+
+    #[test]
+    fn eight_at_a_time_are_told_apart_as_one_is() {
+        let triangles: Vec<_> = some(400).collect();
+        let (mut near, mut far) = (0, 0);
+        for (i, [a, b, c]) in some(60).enumerate() {
+            let slack = [0.0, 1e-6, 0.02, 0.3][i % 4];
+            let four = [a, b, c, a + (c - b) * 0.7];
+            let outline = &four[..3 + i % 2];
+            for run in triangles.chunks(8) {
+                let flat: Vec<_> = run.iter().map(|t| (t, Flat::of(t).1)).collect();
+                let bits = Outline::new(outline, slack).near(&flat);
+                for (lane, t) in run.iter().enumerate() {
+                    let touches = !apart(outline, t, slack);
+                    assert_eq!(bits >> lane & 1 == 1, touches, "{outline:?} {t:?}");
+                    assert_eq!(touches, !apart(t, outline, slack));
+                    if touches { near += 1 } else { far += 1 }
+                }
+                assert_eq!(u32::from(bits) >> run.len(), 0);
+            }
+        }
+        assert!(near > 500 && far > 500, "{near} {far}");
     }
 }

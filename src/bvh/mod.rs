@@ -61,9 +61,15 @@ impl Bvh {
     /// The tree over some triangles, all coordinates finite.
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
         let mut bvh = Self::bare(triangles);
-        bvh.tris = bvh.corners.par_iter().map(|&t| Tri::new(t)).collect();
-        bvh.wide = Wide::new(&bvh.nodes, &bvh.tris);
+        (bvh.tris, bvh.wide) = bvh.lanes();
         bvh
+    }
+
+    /// What distances need.
+    fn lanes(&self) -> (Vec<Tri>, Wide) {
+        let tris: Vec<Tri> = self.corners.par_iter().map(|&t| Tri::new(t)).collect();
+        let wide = Wide::new(&self.nodes, &tris);
+        (tris, wide)
     }
 
     /// The tree without what distances need.

@@ -54,8 +54,12 @@ impl<'a> Run<'a> {
         let own = [Vec8::of(s, a), Vec8::of(s, b), Vec8::of(s, c)];
         let middles = middle(&own);
         let order = f64x8::simd_from(s, self.order);
+        let least = self.faces.iter().min().copied().unwrap_or(u32::MAX);
         for &slot in slots {
             let face = bvh.faces[slot as usize];
+            if face <= least {
+                continue;
+            }
             let corners = &bvh.corners[slot as usize];
             let b = Aabb::of(*corners);
             let (below, above) = (lo.less(Vec8::splat(s, b.max)), hi.to(b.min));

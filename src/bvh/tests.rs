@@ -161,6 +161,13 @@ proptest! {
             prop_assert_eq!(&all[..at.len()], &at.iter().map(alone).collect::<Vec<_>>()[..]);
             prop_assert!(all[at.len()..].iter().all(|&w| w == 0.0));
             let rough = winding.roughly(at);
+            let some = winding.both_of(at, 0b0101, [0.5; Winding::LANES]);
+            let whole = [rough, all];
+            let mut lanes = (0..2).flat_map(|k| (0..at.len()).map(move |i| (k, i)));
+            let same = |(k, i): (usize, usize)| {
+                some[k][i] == if i == 0 || i == 2 { whole[k][i] } else { 0.0 }
+            };
+            prop_assert!(lanes.all(same));
             prop_assert!(at.iter().zip(rough).all(|(&p, w)| w == winding.roughly(&[p])[0]));
         }
         for p in at {

@@ -189,3 +189,37 @@ fn of_children(a: &Moments, b: &Moments, bounds: &Aabb) -> Moments {
     m.add(b);
     m
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The dipoles from the last node up to the first.
+    fn plain(bvh: &Bvh) -> Vec<Dipole> {
+        let mut moments = vec![Moments::at(DVec3::ZERO); bvh.nodes.len()];
+        for (i, node) in bvh.nodes.iter().enumerate().rev() {
+            let first = node.first as usize;
+            moments[i] = if node.count > 0 {
+                of_triangles(&bvh.corners[first..first + node.count as usize], &node.bounds)
+            } else {
+                of_children(&moments[first], &moments[first + 1], &node.bounds)
+            };
+        }
+        bvh.nodes.iter().zip(&moments).map(|(n, m)| m.dipole(&n.bounds)).collect()
+    }
+
+    #[test]
+    fn parts_of_the_tree_sum_up_as_the_whole_does() {
+        let at = |k: u32| {
+            let x = f64::from(k) * 0.754_877_666;
+            DVec3::new(x.fract(), (x * 1.3247).fract(), (x * 1.7549).fract()) * 50.0
+        };
+        let triangle = |i: u32| [at(i), at(i) + at(i + 1) * 0.02, at(i) + at(i + 2) * 0.02];
+        for n in [0, 1, 9, 300, 30_000] {
+            let bvh = Bvh::bare(&(0..n).map(triangle).collect::<Vec<_>>());
+            assert!(n < 30_000 || bvh.nodes.len() > 2 * PART);
+            let same = format!("{:?}", dipoles(&bvh)) == format!("{:?}", plain(&bvh));
+            assert!(same, "{n}");
+        }
+    }
+}

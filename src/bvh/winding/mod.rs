@@ -35,13 +35,18 @@ impl Winding {
 
     /// The tree over oriented triangles with finite coordinates.
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
-        Self::over(Arc::new(Bvh::bare(triangles)))
-    }
-
-    /// Over the triangles of a tree that is there already.
-    pub fn over(bvh: Arc<Bvh>) -> Self {
+        let bvh = Arc::new(Bvh::bare(triangles));
         let dipoles = dipoles(&bvh);
         Self { bvh, dipoles }
+    }
+
+    /// The same, and the tree for other queries.
+    pub fn with_tree(triangles: &[[DVec3; 3]]) -> (Self, Arc<Bvh>) {
+        let mut bvh = Bvh::bare(triangles);
+        let (dipoles, lanes) = rayon::join(|| dipoles(&bvh), || bvh.lanes());
+        (bvh.tris, bvh.wide) = lanes;
+        let bvh = Arc::new(bvh);
+        (Self { bvh: bvh.clone(), dipoles }, bvh)
     }
 
     /// Whether there are no triangles, so that the winding number is 0 everywhere.

@@ -156,13 +156,10 @@ impl<'a> Work<'a> {
             closed.iter().chain(&open).flat_map(|s| s.faces.iter().copied()).collect();
         let faces: Vec<_> = used.iter().map(|&f| self.soup.faces[f as usize]).collect();
         let triangles: Vec<_> = faces.iter().map(|f| self.corners(f)).collect();
-        let tree = || Arc::new(Bvh::new(&triangles));
-        let (all, inside) = if closed.is_empty() || open.is_empty() {
-            let all = tree();
-            let inside = Inside::over(&all, &self.rim(&open), !closed.is_empty());
-            (all, inside)
+        let (inside, all) = if closed.is_empty() || open.is_empty() {
+            Inside::over(&triangles, &self.rim(&open), !closed.is_empty())
         } else {
-            rayon::join(tree, || self.inside(&closed, &open))
+            rayon::join(|| self.inside(&closed, &open), || Arc::new(Bvh::new(&triangles)))
         };
         let surface = Surface::new(triangles, &faces, &all, &inside, self.scale, job)?;
         let mut sheets = self.sheets(&inside);

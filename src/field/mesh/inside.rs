@@ -31,10 +31,16 @@ impl Inside {
         Self::of(closed, open, rim)
     }
 
-    /// From the tree over all faces, which are either those of closed shells or those of open ones.
-    pub(super) fn over(all: &Arc<Bvh>, rim: &[([DVec3; 2], u32)], closed: bool) -> Self {
-        let (all, none) = (Winding::over(all.clone()), Winding::new(&[]));
-        if closed { Self::of(all, none, rim) } else { Self::of(none, all, rim) }
+    /// From all faces, which are either those of closed shells or those of open ones, with the tree over
+    /// them.
+    pub(super) fn over(
+        all: &[[DVec3; 3]],
+        rim: &[([DVec3; 2], u32)],
+        closed: bool,
+    ) -> (Self, Arc<Bvh>) {
+        let ((all, tree), none) = (Winding::with_tree(all), Winding::new(&[]));
+        let inside = if closed { Self::of(all, none, rim) } else { Self::of(none, all, rim) };
+        (inside, tree)
     }
 
     fn of(closed: Winding, open: Winding, rim: &[([DVec3; 2], u32)]) -> Self {

@@ -246,3 +246,31 @@ impl Soup {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Sides;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn edges_come_in_order_with_all_their_sides() {
+        // a strip whose faces turn both ways, and a fan at one point
+        let strip =
+            (0..50u32).map(|i| if i % 3 == 0 { [i + 2, i + 1, i] } else { [i, i + 1, i + 2] });
+        let fan = (0..20u32).map(|i| [60, 5 + (7 * i) % 40, 6 + (7 * i) % 40]);
+        let faces: Vec<_> = strip.chain(fan).collect();
+        let mut want: BTreeMap<[u32; 2], Vec<(u32, bool)>> = BTreeMap::new();
+        for (i, f) in faces.iter().enumerate() {
+            for k in 0..3 {
+                let (p, q) = (f[k], f[(k + 1) % 3]);
+                want.entry([p.min(q), p.max(q)]).or_default().push((i as u32, p < q));
+            }
+        }
+        let sides = Sides::of(&faces);
+        let found = sides.edges().map(|(ends, sides)| {
+            (ends, sides.iter().map(|s| (s.face(), s.forward())).collect::<Vec<_>>())
+        });
+        assert_eq!(found.collect::<Vec<_>>(), want.into_iter().collect::<Vec<_>>());
+        assert_eq!(Sides::of(&[]).edges().count(), 0);
+    }
+}
