@@ -8,6 +8,7 @@
 mod batch;
 mod contact;
 mod hierarchy;
+mod limits;
 mod nearest;
 mod pairs;
 mod ray;

@@ -76,7 +76,7 @@ impl Bvh {
     pub(super) fn gather(&self, b: &Aabb, reach: f64, open: &mut Open) -> Vec<u32> {
         let mut found = vec![];
         dispatch!(Level::new(), s => {
-            self.wide.gather(s, b, reach, usize::MAX, open, &mut found)
+            self.wide.gather(s, b, reach, open, &mut found)
         });
         found
     }

@@ -133,8 +133,49 @@ fn moments_of_the_third_order_fall_with_the_fourth_power() {
     assert!(order > 4.5, "order {order}");
 }
 
+/// Triangles of all shapes about the origin: round ones, slivers, segments, points, and copies.
+fn soup(at: &[DVec3], shift: DVec3) -> Vec<[DVec3; 3]> {
+    let shape = |(n, p): (usize, &DVec3)| {
+        let [a, b, c] = [0, 1, 2].map(|k| at[(3 * n + k) % at.len()]);
+        let size = [0.3, 0.02, 1.5][n % 3];
+        let (u, v) = (a * size, b * size);
+        let corners = match n % 7 {
+            0 => [*p, *p + u, *p + u + v * 1e-9],
+            1 => [*p, *p + u, *p + u],
+            2 => [*p; 3],
+            3 => [a, b, c],
+            _ => [*p, *p + u, *p + v],
+        };
+        corners.map(|p| shift + p)
+    };
+    let mut tris: Vec<_> = at.iter().enumerate().map(shape).collect();
+    tris.extend_from_within(..at.len() / 4);
+    tris
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn points_that_walk_together_find_what_each_finds(
+        at in points(300, 1.0),
+        corner in points(6, 1.5),
+        fine in 0.0..5.0f64,
+        far in 0usize..3,
+    ) {
+        let shift = dvec3(1.0, -2.0, 0.5) * [0.0, 1e3, 1e7][far];
+        let tris = soup(&at, shift);
+        let bvh = Bvh::new(&tris);
+        for (n, p) in corner.iter().enumerate() {
+            // steps from a fifth of the whole to nearly nothing, runs of 64, of eight and what is left
+            let step = 0.3 * 10f64.powf(-fine) * (1.0 + n as f64);
+            let at = &cube(shift + *p, step)[..if n % 2 == 0 { 512 } else { 61 }];
+            for (p, hit) in at.iter().zip(bvh.nearest_all(at)) {
+                prop_assert_eq!(hit.distance2.sqrt(), brute(&tris, *p));
+                prop_assert_eq!(bvh.nearest_of(*p, &hit).map(|n| n.distance), Some(hit.distance2.sqrt()));
+            }
+        }
+    }
 
     #[test]
     fn nearest_is_the_minimum_over_all(at in points(40, 2.0), bump in 0.0..0.3) {

@@ -4,7 +4,7 @@
 //! a misjudged side changes the result by round-off only. Every distance in this crate goes
 //! through [`Tri::distance2`], one point or eight at a time, so all queries agree exactly.
 
-use fearless_simd::{Simd, f64x8, prelude::*};
+use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
 use glam::DVec3;
 
 /// Points measured at once by the batch kernel.
@@ -131,11 +131,19 @@ fn clip_lanes<S: Simd>(x: f64x8<S>, hi: f64x8<S>) -> f64x8<S> {
     x.max(f64x8::splat(x.token(), 0.0)).min(hi)
 }
 
-/// Eight distances at once, [`Tri::distance2`] to the letter; `t` tells the lanes of a number of
-/// the triangle. What is not inlined here would lose the wide registers: no closures.
+/// A point against a triangle in its frame: over each side line how far beyond the side's ends, and
+/// how far off to the left; the height; and where the foot is in the triangle.
+struct Local8<S: Simd> {
+    over: [f64x8<S>; 3],
+    off: [f64x8<S>; 3],
+    z: f64x8<S>,
+    inside: mask64x8<S>,
+}
+
+/// `t` tells the lanes of a number of the triangle. What is not inlined here would lose the wide
+/// registers: no closures.
 #[inline(always)]
-fn distances2<S: Simd>(p: &Points<S>, t: impl Numbers<S>) -> f64x8<S> {
-    let zero = f64x8::splat(p.x.token(), 0.0);
+fn local<S: Simd>(p: &Points<S>, t: &impl Numbers<S>) -> Local8<S> {
     let (rx, ry, rz) = (p.x - t.at(0), p.y - t.at(1), p.z - t.at(2));
     let x = rx * t.at(3) + ry * t.at(4) + rz * t.at(5);
     let y = rx * t.at(6) + ry * t.at(7) + rz * t.at(8);
@@ -149,11 +157,57 @@ fn distances2<S: Simd>(p: &Points<S>, t: impl Numbers<S>) -> f64x8<S> {
     let over_a = x - clip_lanes(x, ab);
     let over_b = along_b - clip_lanes(along_b, bl);
     let over_c = along_c - clip_lanes(along_c, cl);
-    let side_b = over_b * over_b + perp_b * perp_b;
-    let side_c = over_c * over_c + perp_c * perp_c;
-    let sides = (over_a * over_a + y * y).min(side_b.min(side_c));
-    let inside = y.min(perp_b.min(perp_c)).simd_gt(zero);
-    z * z + inside.select(zero, sides)
+    let inside = y.min(perp_b.min(perp_c)).simd_gt(f64x8::splat(x.token(), 0.0));
+    Local8 { over: [over_a, over_b, over_c], off: [y, perp_b, perp_c], z, inside }
+}
+
+impl<S: Simd> Local8<S> {
+    /// Squared distances from the sides.
+    #[inline(always)]
+    fn sides(&self) -> [f64x8<S>; 3] {
+        let ([a, b, c], [y, p, q]) = (self.over, self.off);
+        [a * a + y * y, b * b + p * p, c * c + q * q]
+    }
+}
+
+/// Eight distances at once, [`Tri::distance2`] to the letter.
+#[inline(always)]
+fn distances2<S: Simd>(p: &Points<S>, t: impl Numbers<S>) -> f64x8<S> {
+    let local = local(p, &t);
+    let [a, b, c] = local.sides();
+    let sides = a.min(b.min(c));
+    local.z * local.z + local.inside.select(f64x8::splat(sides.token(), 0.0), sides)
+}
+
+/// The way from the nearest point of a triangle, mm: squared length, and along x, y, z. Its length
+/// is that of [`distances2`] but for round-off.
+#[derive(Clone, Copy)]
+pub(super) struct Way<S: Simd> {
+    pub(super) length2: f64x8<S>,
+    pub(super) along: [f64x8<S>; 3],
+}
+
+/// The ways to eight points at once.
+#[inline(always)]
+fn ways<S: Simd>(p: &Points<S>, t: impl Numbers<S>) -> Way<S> {
+    let local = local(p, &t);
+    let ([over_a, over_b, over_c], [y, perp_b, perp_c]) = (local.over, local.off);
+    let [a, b, c] = local.sides();
+    let (bx, by, cx, cy) = (t.at(13), t.at(14), t.at(16), t.at(17));
+    let by_c = c.simd_lt(b);
+    let side = by_c.select(c, b);
+    let x = by_c.select(over_c * cx + perp_c * cy, over_b * bx - perp_b * by);
+    let v = by_c.select(over_c * cy - perp_c * cx, over_b * by + perp_b * bx);
+    let by_a = a.simd_lt(side);
+    let zero = f64x8::splat(side.token(), 0.0);
+    let side = local.inside.select(zero, by_a.select(a, side));
+    let x = local.inside.select(zero, by_a.select(over_a, x));
+    let y = local.inside.select(zero, by_a.select(y, v));
+    let z = local.z;
+    let along_x = x * t.at(3) + y * t.at(6) + z * t.at(9);
+    let along_y = x * t.at(4) + y * t.at(7) + z * t.at(10);
+    let along_z = x * t.at(5) + y * t.at(8) + z * t.at(11);
+    Way { length2: z * z + side, along: [along_x, along_y, along_z] }
 }
 
 /// Where [`distances2`] reads a triangle's numbers from.
@@ -181,11 +235,27 @@ impl<S: Simd> Numbers<S> for Many<'_, S> {
     }
 }
 
+/// One of eight triangles, the same in all lanes.
+struct OneOf<'a, S: Simd>(S, &'a [[f64; LANES]; NUMBERS], usize);
+
+impl<S: Simd> Numbers<S> for OneOf<'_, S> {
+    #[inline(always)]
+    fn at(&self, n: usize) -> f64x8<S> {
+        f64x8::splat(self.0, self.1[n][self.2])
+    }
+}
+
 impl Lanes {
     /// Up to eight triangles, at least one; the last one fills the lanes left over.
     pub(super) fn of(tris: &[Tri]) -> Self {
         let of = |n: usize, lane: usize| tris[lane.min(tris.len() - 1)].0[n];
         Self(std::array::from_fn(|n| std::array::from_fn(|lane| of(n, lane))))
+    }
+
+    /// The ways to a point (the same in all lanes).
+    #[inline(always)]
+    pub(super) fn ways<S: Simd>(&self, s: S, p: &Points<S>) -> Way<S> {
+        ways(p, Many(s, &self.0))
     }
 
     /// Squared distances of a point (the same in all lanes).
@@ -213,6 +283,18 @@ impl<S: Simd> Points<S> {
         }
         let lanes = |x| f64x8::simd_from(s, x);
         Self { x: lanes(x), y: lanes(y), z: lanes(z) }
+    }
+
+    /// The ways from a triangle.
+    #[inline(always)]
+    pub(super) fn ways(&self, tri: &Tri) -> Way<S> {
+        ways(self, One(self.x.token(), &tri.0))
+    }
+
+    /// Squared distances to one of eight triangles.
+    #[inline(always)]
+    pub(super) fn distances2_of(&self, tris: &Lanes, lane: usize) -> f64x8<S> {
+        distances2(self, OneOf(self.x.token(), &tris.0, lane % LANES))
     }
 
     /// Squared distances to a triangle.

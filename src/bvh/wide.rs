@@ -5,7 +5,8 @@
 //! the width of the machine's vectors, a distance comes out with the same bits.
 
 use super::Node;
-use super::triangle::{LANES, Lanes, Points, Tri};
+use super::limits::Limits;
+use super::triangle::{LANES, Lanes, Points, Tri, Way};
 use crate::num::Aabb;
 use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::DVec3;
@@ -24,9 +25,10 @@ struct Eight {
 
 /// Up to eight triangles; the last one fills the lanes left over.
 #[derive(Clone, Debug)]
-struct Pack {
-    lanes: Lanes,
-    first: u32,
+pub(super) struct Pack {
+    pub(super) lanes: Lanes,
+    /// Slot of the first.
+    pub(super) first: u32,
     count: u32,
 }
 
@@ -36,6 +38,20 @@ pub(super) struct Wide {
     nodes: Vec<Eight>,
     packs: Vec<Pack>,
     root: Option<u32>,
+}
+
+/// Who walks the tree for the nearest triangles of several points.
+pub(super) trait Seek<S: Simd> {
+    /// The middle of the points, in every lane.
+    fn middle(&self) -> &Points<S>;
+    /// The box of the points.
+    fn bounds(&self) -> &Aabb;
+    /// Squared distance from the box beyond which nothing counts.
+    fn edge2(&self) -> f64;
+    /// What else counts.
+    fn limits(&self) -> &Limits<S>;
+    /// Takes the triangles of a pack whose bits are set, by the ways from them; `false` ends the walk.
+    fn take(&mut self, pack: &Pack, way: &Way<S>, bits: u64) -> bool;
 }
 
 /// What a walk still has to look at: squared distance of the box, and its child.
@@ -67,6 +83,20 @@ impl Eight {
         };
         let (x, y, z) = (axis(0), axis(1), axis(2));
         x * x + y * y + z * z
+    }
+
+    /// The ways from the boxes to a point.
+    #[inline(always)]
+    fn ways<S: Simd>(&self, p: &Points<S>) -> Way<S> {
+        let s = p.x.token();
+        let zero = f64x8::splat(s, 0.0);
+        let axis = |p: f64x8<S>, a: usize| {
+            let above = (p - f64x8::from_slice(s, &self.hi[a])).max(zero);
+            let below = (p - f64x8::from_slice(s, &self.lo[a])).min(zero);
+            above + below
+        };
+        let (x, y, z) = (axis(p.x, 0), axis(p.y, 1), axis(p.z, 2));
+        Way { length2: x * x + y * y + z * z, along: [x, y, z] }
     }
 }
 
@@ -178,17 +208,46 @@ impl Wide {
         (best, slot)
     }
 
-    /// Slots of the packs within `reach` of a box; `false` as soon as they are more than `cap`.
+    /// Shows the seeker every triangle that can be nearest to one of its points, those near the middle
+    /// first; whether it saw them all.
+    #[inline(always)]
+    pub(super) fn seek<S: Simd>(&self, s: S, seeker: &mut impl Seek<S>, open: &mut Open) -> bool {
+        open.clear();
+        open.extend(self.root.map(|root| (0.0, root)));
+        while let Some((gap2, child)) = open.pop() {
+            if gap2 > seeker.edge2() {
+                continue;
+            }
+            if child & PACK == 0 {
+                let node = &self.nodes[child as usize];
+                let Aabb { min, max } = *seeker.bounds();
+                let gap2 = node.gaps2(s, min, max);
+                let near = gap2.simd_le(f64x8::splat(s, seeker.edge2())).to_bitmask();
+                let way = node.ways(seeker.middle());
+                let bits = near & seeker.limits().can_win(&way);
+                open_some(open, way.length2, gap2, bits, &node.child);
+                continue;
+            }
+            let pack = &self.packs[(child & !PACK) as usize];
+            let way = pack.lanes.ways(s, seeker.middle());
+            let bits = seeker.limits().can_win(&way) & ((1 << pack.count) - 1);
+            if bits != 0 && !seeker.take(pack, &way, bits) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Slots of the packs within `reach` of a box.
     #[inline(always)]
     pub(super) fn gather<S: Simd>(
         &self,
         s: S,
         b: &Aabb,
         reach: f64,
-        cap: usize,
         open: &mut Open,
         out: &mut Vec<u32>,
-    ) -> bool {
+    ) {
         out.clear();
         open.clear();
         open.extend(self.root.map(|root| (0.0, root)));
@@ -207,31 +266,40 @@ impl Wide {
             }
             let pack = &self.packs[(child & !PACK) as usize];
             out.extend(pack.first..pack.first + pack.count);
-            if out.len() > cap {
-                return false;
-            }
         }
-        true
     }
 }
 
 /// Puts the children that are near enough on the pile, the nearest on top.
 #[inline(always)]
 fn open_near<S: Simd>(open: &mut Open, d2: f64x8<S>, edge: f64, child: &[u32; LANES]) {
-    let mut bits = d2.simd_le(f64x8::splat(d2.token(), edge)).to_bitmask();
-    let d2: [f64; LANES] = d2.into();
+    open_some(open, d2, d2, d2.simd_le(f64x8::splat(d2.token(), edge)).to_bitmask(), child);
+}
+
+/// Puts some of the children on the pile, that with the least `order` on top.
+#[inline(always)]
+fn open_some<S: Simd>(
+    open: &mut Open,
+    order: f64x8<S>,
+    d2: f64x8<S>,
+    mut bits: u64,
+    child: &[u32; LANES],
+) {
+    let (order, d2): ([f64; LANES], [f64; LANES]) = (order.into(), d2.into());
     let from = open.len();
+    let mut keys = [0.0; LANES];
     while bits != 0 {
         let lane = bits.trailing_zeros() as usize;
         bits &= bits - 1;
-        let one = (d2[lane], child[lane]);
         let mut at = open.len();
-        open.push(one);
-        while at > from && open[at - 1].0 < one.0 {
+        open.push((0.0, 0));
+        while at > from && keys[at - 1 - from] < order[lane] {
             open[at] = open[at - 1];
+            keys[at - from] = keys[at - 1 - from];
             at -= 1;
         }
-        open[at] = one;
+        open[at] = (d2[lane], child[lane]);
+        keys[at - from] = order[lane];
     }
 }
 

@@ -61,106 +61,125 @@ impl Sampled {
         Ok(s)
     }
 
-    /// Fills the samples of the far faces: from the neighbour that has them in its core, else from
-    /// the field.
+    /// Fills the samples of the far faces: from the neighbours that have them in their cores; on the
+    /// sides of the box from the field.
     fn fill_far_faces(
         &mut self,
         grid: &Grid,
         field: &dyn Field,
         job: &dyn Job,
     ) -> Result<(), Cancelled> {
-        let far = &near_order()[CORE..];
+        let far = far_blocks();
+        let mut faces = vec![0f32; (LEAF - CORE) * AT_ONCE.min(self.leaves.len())];
         for first in (0..self.leaves.len()).step_by(AT_ONCE) {
             let some = first..(first + AT_ONCE).min(self.leaves.len());
-            let fill = |leaf| self.far_faces(leaf, far, grid, field, job);
-            let faces: Vec<Vec<(usize, f32)>> =
-                some.into_par_iter().map(fill).collect::<Result<_, Cancelled>>()?;
-            for (leaf, faces) in (first..).zip(faces) {
-                for (n, f) in faces {
-                    self.data[leaf * LEAF + n] = f;
+            let faces = &mut faces[..(LEAF - CORE) * some.len()];
+            let fill = |(leaf, faces): (usize, &mut [f32])| {
+                job::check(job)?;
+                self.far_faces(leaf, &far, grid, field, faces);
+                Ok(())
+            };
+            let leaves = some.clone().into_par_iter();
+            leaves.zip(faces.par_chunks_mut(LEAF - CORE)).try_for_each(fill)?;
+            let data = &mut self.data[some.start * LEAF..some.end * LEAF];
+            let each = data.par_chunks_mut(LEAF).zip(faces.par_chunks(LEAF - CORE));
+            each.for_each(|(samples, faces)| {
+                for (&(n, _), &f) in far.iter().flat_map(|b| &b.samples).zip(faces) {
+                    samples[n] = f;
                 }
-            }
+            });
         }
         Ok(())
     }
 
-    /// The samples of a leaf's far faces.
+    /// The samples of a leaf's far faces, in the order of `far`.
     fn far_faces(
         &self,
         leaf: usize,
-        far: &[usize],
+        far: &[Block],
         grid: &Grid,
         field: &dyn Field,
-        job: &dyn Job,
-    ) -> Result<Vec<(usize, f32)>, Cancelled> {
-        job::check(job)?;
+        mut faces: &mut [f32],
+    ) {
         let Leaf { corner, level } = self.leaves[leaf];
-        let (mut found, mut asked, mut at) = (Vec::with_capacity(far.len()), vec![], vec![]);
-        for &n in far {
-            let cell = corner + place(n) * (1 << level);
-            let other = self.leaf_at(cell);
-            let from = cell - self.leaves[other].corner;
-            let outside = (cell.cmpge(self.table_size * CELLS)).any();
-            if !outside && self.leaves[other].level == level {
-                let o = from.map(|x| x >> level).as_usizevec3();
-                found.push((n, self.data[other * LEAF + o.x + SIDE * (o.y + SIDE * o.z)]));
-            } else {
-                asked.push(n);
-                at.push(grid.point(cell));
+        let (mut at, mut out) = (Vec::new(), Vec::new());
+        for Block { shift, samples } in far {
+            let (here, rest) = faces.split_at_mut(samples.len());
+            faces = rest;
+            let cell = corner + shift * (CELLS << level);
+            let beside = self.leaves[self.leaf_at(cell)].level;
+            let cells = samples.iter().map(|&(n, _)| corner + place(n) * (1 << level));
+            if cell.cmpge(self.table_size * CELLS).any() {
+                at.clear();
+                at.extend(cells.map(|c| grid.point(c)));
+                out.resize(at.len(), 0.0);
+                field.values(&at, &mut out);
+                here.iter_mut().zip(&out).for_each(|(f, &v)| *f = v as f32);
+            } else if beside == level {
+                let core = self.samples(self.leaf_at(cell));
+                here.iter_mut().zip(samples).for_each(|(f, &(_, o))| *f = core[o]);
+            } else if beside < level {
+                here.iter_mut().zip(cells).for_each(|(f, cell)| *f = self.near_sample(cell));
             }
+            // a coarser one gives its values when levels are joined
         }
-        let mut out = vec![0.0; at.len()];
-        field.values(&at, &mut out);
-        found.extend(asked.into_iter().zip(out).map(|(n, f)| (n, f as f32)));
-        Ok(found)
+    }
+
+    /// The sample at a cell's low corner, which must be one of its leaf's core.
+    fn near_sample(&self, cell: IVec3) -> f32 {
+        let leaf = self.leaf_at(cell);
+        let Leaf { corner, level } = self.leaves[leaf];
+        let o = (cell - corner).map(|x| x >> level).as_usizevec3();
+        self.samples(leaf)[o.x + SIDE * (o.y + SIDE * o.z)]
+    }
+
+    fn samples(&self, leaf: usize) -> &[f32] {
+        &self.data[leaf * LEAF..(leaf + 1) * LEAF]
     }
 
     /// Gives fine leaves the values of coarser neighbours on common faces, coarsest first.
     fn join_levels(&mut self, top: u32) {
+        let sides = side_blocks();
         for level in (0..top).rev() {
-            let todo: Vec<usize> =
-                (0..self.leaves.len()).filter(|&l| self.leaves[l].level == level).collect();
+            let fix = |(leaf, l): (usize, &Leaf)| match l.level == level {
+                true => self.coarser_on_faces(leaf, &sides),
+                false => Vec::new(),
+            };
             let fixes: Vec<Vec<(usize, f32)>> =
-                todo.par_iter().map(|&leaf| self.coarser_on_faces(leaf)).collect();
-            for (at, value) in fixes.into_iter().flatten() {
-                self.data[at] = value;
-            }
+                self.leaves.par_iter().enumerate().map(|(leaf, l)| fix((leaf, l))).collect();
+            self.data.par_chunks_mut(LEAF).zip(fixes).for_each(|(samples, fixes)| {
+                fixes.into_iter().for_each(|(n, value)| samples[n] = value);
+            });
         }
     }
 
     /// Sample index and new value, for each sample on a face shared with a coarser leaf.
-    fn coarser_on_faces(&self, leaf: usize) -> Vec<(usize, f32)> {
+    fn coarser_on_faces(&self, leaf: usize, sides: &[Block]) -> Vec<(usize, f32)> {
         let Leaf { corner, level } = self.leaves[leaf];
         let side = CELLS << level;
-        let coarse_near = (-1..=1).any(|z| {
-            (-1..=1).any(|y| {
-                (-1..=1).any(|x| {
-                    let probe = corner + side / 2 + IVec3::new(x, y, z) * side;
-                    self.leaves[self.leaf_at(probe)].level > level
-                })
-            })
+        // a coarser leaf beside this one fills all of a block of its size
+        let near: [usize; 27] = std::array::from_fn(|n| {
+            let n = n as i32;
+            let shift = IVec3::new(n % 3, n / 3 % 3, n / 9) - 1;
+            self.leaf_at(corner + side / 2 + shift * side)
         });
         let mut out = Vec::new();
-        if !coarse_near {
+        if near.iter().all(|&l| self.leaves[l].level <= level) {
             return out;
         }
-        for n in 0..LEAF {
-            let ijk = place(n);
-            let on_face = ijk.cmpeq(IVec3::ZERO) | ijk.cmpeq(IVec3::splat(CELLS));
-            if !on_face.any() {
-                continue;
-            }
-            let u = corner + ijk * (1 << level);
-            let coarsest = (0..8)
-                .map(|o| {
-                    let back = IVec3::new(o & 1, o >> 1 & 1, o >> 2 & 1);
-                    self.leaf_at(u - back)
-                })
-                .max_by_key(|&l| self.leaves[l].level)
-                .unwrap_or(leaf);
+        for Block { shift, samples } in sides {
+            // the blocks that meet in these samples
+            let meet = (0..8).map(|o| {
+                let back = IVec3::new(o & 1, o >> 1 & 1, o >> 2 & 1);
+                let at = (shift.max(IVec3::ZERO) - back * shift.abs()) + 1;
+                near[(at.x + 3 * (at.y + 3 * at.z)) as usize]
+            });
+            let coarsest = meet.max_by_key(|&l| self.leaves[l].level).unwrap_or(leaf);
             if self.leaves[coarsest].level > level {
-                let v = self.interpolate_in(coarsest, u.as_dvec3());
-                out.push((leaf * LEAF + n, v as f32));
+                out.extend(samples.iter().map(|&(n, _)| {
+                    let u = corner + place(n) * (1 << level);
+                    (n, self.interpolate_in(coarsest, u.as_dvec3()) as f32)
+                }));
             }
         }
         out
@@ -171,9 +190,14 @@ impl Sampled {
             .into_par_iter()
             .map(|l| {
                 let h = self.step * f64::from(1u32 << self.leaves[l].level);
-                let s = &self.data[l * LEAF..(l + 1) * LEAF];
-                if self.ranges.leaf(l).lo >= 0.0 {
+                let s = self.samples(l);
+                let range = self.ranges.leaf(l);
+                let all = f64::from(CELLS).powi(3) * h * h * h;
+                if range.lo >= 0.0 {
                     return 0.0;
+                }
+                if range.hi < 0.0 {
+                    return all;
                 }
                 let mut cells = 0.0;
                 for k in 0..SIDE - 1 {
@@ -287,8 +311,7 @@ impl Grid {
     }
 }
 
-/// Leaves whose far faces are held at once, beside the samples: a face sample takes four times the
-/// memory here.
+/// Leaves whose far faces are held at once, beside the samples.
 const AT_ONCE: usize = 1024;
 
 /// Samples of a leaf without its far faces.
@@ -311,6 +334,43 @@ fn near_order() -> Vec<usize> {
         (far[0] | far[1] << 1 | far[2] << 2, z)
     });
     order
+}
+
+/// Samples of a leaf that it shares with the same other leaves.
+struct Block {
+    /// Along each axis on the near side (-1), on neither (0), or on the far side (1).
+    shift: IVec3,
+    /// Each with its place in the leaf on the other side of the far faces it lies on.
+    samples: Vec<(usize, usize)>,
+}
+
+impl Block {
+    /// Puts samples into blocks by where they lie.
+    fn all(samples: &[usize], shift: impl Fn(IVec3) -> IVec3) -> Vec<Self> {
+        let mut blocks: Vec<Self> = Vec::new();
+        for &n in samples {
+            let ijk = place(n);
+            let o = ijk.map(|x| x % CELLS).as_usizevec3();
+            let (shift, one) = (shift(ijk), (n, o.x + SIDE * (o.y + SIDE * o.z)));
+            match blocks.iter_mut().find(|b| b.shift == shift) {
+                Some(block) => block.samples.push(one),
+                None => blocks.push(Self { shift, samples: vec![one] }),
+            }
+        }
+        blocks
+    }
+}
+
+/// The samples of the far faces by the neighbour that has them in its core.
+fn far_blocks() -> Vec<Block> {
+    Block::all(&near_order()[CORE..], |ijk| ijk / CELLS)
+}
+
+/// The samples on faces by the neighbours that have them too.
+fn side_blocks() -> Vec<Block> {
+    let on_face = |&n: &usize| place(n).to_array().iter().any(|x| x % CELLS == 0);
+    let samples: Vec<usize> = (0..LEAF).filter(on_face).collect();
+    Block::all(&samples, |ijk| ijk / CELLS - ijk.map(|x| i32::from(x == 0)))
 }
 
 fn fill_table(leaves: &[Leaf], size: IVec3) -> Vec<u32> {

@@ -62,29 +62,35 @@ impl Ranges {
 }
 
 fn span(s: &[f32], step: f64, level: u32) -> Span {
-    let (mut lo, mut hi) = (f32::INFINITY, f32::NEG_INFINITY);
-    let mut rise = [0f32; 3];
-    for k in 0..SIDE {
-        for j in 0..SIDE {
-            for i in 0..SIDE {
-                let n = i + SIDE * (j + SIDE * k);
-                let v = s[n];
-                (lo, hi) = (lo.min(v), hi.max(v));
-                if i + 1 < SIDE {
-                    rise[0] = rise[0].max((s[n + 1] - v).abs());
-                }
-                if j + 1 < SIDE {
-                    rise[1] = rise[1].max((s[n + SIDE] - v).abs());
-                }
-                if k + 1 < SIDE {
-                    rise[2] = rise[2].max((s[n + SIDE * SIDE] - v).abs());
-                }
-            }
+    let (mut lo, mut hi) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
+    for row in s.chunks(LANES) {
+        for ((lo, hi), &v) in lo.iter_mut().zip(&mut hi).zip(row) {
+            (*lo, *hi) = (lo.min(v), hi.max(v));
         }
     }
+    let lo = lo.into_iter().fold(f32::INFINITY, f32::min);
+    let hi = hi.into_iter().fold(f32::NEG_INFINITY, f32::max);
+    let rows = s.chunks_exact(SIDE).map(|row| steepest(&row[1..], row));
+    let planes = s.chunks_exact(SIDE * SIDE).map(|plane| steepest(&plane[SIDE..], plane));
+    let rise =
+        [rows.fold(0.0, f32::max), planes.fold(0.0, f32::max), steepest(&s[SIDE * SIDE..], s)];
     let h = step * f64::from(1u32 << level);
     let slope = DVec3::from(rise.map(f64::from)).length() / h;
     Span { lo, hi, slope: (slope * 1.000_001) as f32 }
+}
+
+/// Values looked at together.
+const LANES: usize = 8;
+
+/// The greatest difference between two runs of values, as far as both go.
+fn steepest(next: &[f32], here: &[f32]) -> f32 {
+    let mut most = [0f32; LANES];
+    for (next, here) in next.chunks(LANES).zip(here.chunks(LANES)) {
+        for ((m, n), h) in most.iter_mut().zip(next).zip(here) {
+            *m = m.max((n - h).abs());
+        }
+    }
+    most.into_iter().fold(0.0, f32::max)
 }
 
 impl Sampled {
