@@ -96,6 +96,11 @@ impl Bvh {
         self.corners.len()
     }
 
+    /// The triangles that the tree was built from, neighbours in space mostly next to each other.
+    pub fn order(&self) -> &[u32] {
+        &self.faces
+    }
+
     /// Whether there is nothing to query.
     pub fn is_empty(&self) -> bool {
         self.corners.is_empty()

@@ -127,7 +127,7 @@ impl Surface {
         let all = Faces { faces, triangles, normals, inside, scale };
         let contacts = all.contacts(bvh, job)?;
         let mut surface = Self::default();
-        let untouched = all.untouched(&contacts, job)?;
+        let untouched = all.untouched(bvh, &contacts, job)?;
         if all_surface(&untouched, faces.len()) {
             let trust = untouched.iter().flat_map(|(group, _, t)| group.iter().map(|_| *t));
             let trust = trust.collect();
@@ -244,7 +244,12 @@ impl Faces<'_> {
     }
 
     /// Faces without contacts, by patches of one class each, with their trust.
-    fn untouched(&self, contacts: &[Vec<u32>], job: &dyn Job) -> Result<Vec<Group>, Cancelled> {
+    fn untouched(
+        &self,
+        bvh: &Bvh,
+        contacts: &[Vec<u32>],
+        job: &dyn Job,
+    ) -> Result<Vec<Group>, Cancelled> {
         check(job)?;
         let free =
             |f: u32| contacts[f as usize].is_empty() && self.normals[f as usize] != DVec3::ZERO;
@@ -254,8 +259,11 @@ impl Faces<'_> {
             faces.iter().zip(known).map(|(&f, (class, trust))| (vec![f], class, trust)).collect()
         };
         if !self.inside.is_closed() {
-            // the winding number varies along an open shell
-            return Ok(all.par_chunks(GROUP).flat_map_iter(alone).collect());
+            // the winding number varies along an open shell; neighbours share most of the way to it
+            let near: Vec<u32> = bvh.order().iter().copied().filter(|&f| free(f)).collect();
+            let mut known: Vec<Group> = near.par_chunks(GROUP).flat_map_iter(alone).collect();
+            known.par_sort_unstable_by_key(|group| group.0.first().copied());
+            return Ok(known);
         }
         let sides = Sides::of(self.faces);
         let mut sets = Sets::new(self.faces.len());
