@@ -168,6 +168,14 @@ impl Solid {
             if !self.inside.bounds().contains(p) {
                 continue;
             }
+            // most points lie in the free ball of the one before
+            if let Some(inside) =
+                known.last().filter(|k| self.reaches(k, p, distance)).map(|k| k.inside)
+            {
+                *f = signed(distance, inside);
+                known.push(Known { at: p, distance, inside });
+                continue;
+            }
             // the way to the foot must lie in the ball that is known to be sharp
             let near = self
                 .surface
@@ -187,9 +195,8 @@ impl Solid {
         for (n, &(i, side)) in open.iter().enumerate() {
             let (p, distance) = (at[i], out[i]);
             let same = || sides.iter().find(|s| Some(s.0) == side).map(|s| s.1);
-            let reaches =
-                |k: &&Known| k.at.distance(p) < k.distance.max(distance) - self.blur - self.touch;
-            let reached = || known.iter().rev().find(reaches).map(|k| k.inside);
+            let reached =
+                || known.iter().rev().find(|k| self.reaches(k, p, distance)).map(|k| k.inside);
             let inside = same().or_else(reached).unwrap_or_else(|| {
                 if n >= asked {
                     let next: Vec<DVec3> = open[n..].iter().take(OCTET).map(|o| at[o.0]).collect();
@@ -202,6 +209,11 @@ impl Solid {
             known.push(Known { at: p, distance, inside });
             sides.extend(side.map(|side| (side, inside)));
         }
+    }
+
+    /// Whether the way from a known point to one at that distance from the surface cannot meet it.
+    fn reaches(&self, known: &Known, p: DVec3, distance: f64) -> bool {
+        known.at.distance(p) < known.distance.max(distance) - self.blur - self.touch
     }
 
     /// The face and the side of it on which a point lies, if all points there that are near each
