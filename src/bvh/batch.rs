@@ -5,7 +5,7 @@
 use super::Bvh;
 use super::limits::{Limit, Limits, Small, Star};
 use super::triangle::{LANES, Points, Tri, Way};
-use super::wide::{Open, Pack, Seek};
+use super::wide::{Known, Open, Pack, Seek};
 use crate::num::Aabb;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
@@ -78,15 +78,12 @@ fn greatest<S: Simd>(d2: f64x8<S>) -> f64 {
 /// Looks for everything that can be nearest to a point of a box.
 struct Run<'a, S: Simd> {
     s: S,
-    bounds: Aabb,
     of: Small,
-    middle: Points<S>,
     corners: Points<S>,
     star: Star,
     /// No point of the box is farther from the surface.
     edge: f64,
-    limit: Limit,
-    limits: Limits<S>,
+    known: Known<S>,
     found: &'a mut Vec<u32>,
 }
 
@@ -102,30 +99,15 @@ impl<'a, S: Simd> Run<'a, S> {
             edge = greatest(corners.distances2(tri));
         }
         let limit = Limit::new(&of, &star, edge);
-        let limits = Limits::one(s, &limit);
-        Self { s, bounds, of, middle, corners, star, edge, limit, limits, found }
+        let known = Known::new(s, middle, bounds, &limit);
+        Self { s, of, corners, star, edge, known, found }
     }
 }
 
 impl<S: Simd> Seek<S> for Run<'_, S> {
     #[inline(always)]
-    fn middle(&self) -> &Points<S> {
-        &self.middle
-    }
-
-    #[inline(always)]
-    fn bounds(&self) -> &Aabb {
-        &self.bounds
-    }
-
-    #[inline(always)]
-    fn edge2(&self) -> f64 {
-        self.limit.edge2
-    }
-
-    #[inline(always)]
-    fn limits(&self) -> &Limits<S> {
-        &self.limits
+    fn known(&self) -> &Known<S> {
+        &self.known
     }
 
     #[inline(always)]
@@ -134,9 +116,8 @@ impl<S: Simd> Seek<S> for Run<'_, S> {
             // a distance from a triangle is greatest at a corner
             let corners = self.corners.distances2_of(&pack.lanes, lane);
             self.edge = self.edge.min(greatest(corners));
-            self.limit = Limit::new(&self.of, &self.star, self.edge);
-            self.limits = Limits::one(self.s, &self.limit);
-            bits &= self.limits.can_win(way);
+            self.known.narrow(self.s, &Limit::new(&self.of, &self.star, self.edge));
+            bits &= self.known.limits.can_win(way);
         }
         while bits != 0 {
             self.found.push(pack.first + bits.trailing_zeros());
@@ -149,14 +130,11 @@ impl<S: Simd> Seek<S> for Run<'_, S> {
 /// Looks for the nearest triangles of eight points.
 struct Octet<S: Simd> {
     s: S,
-    bounds: Aabb,
     of: Small,
-    middle: Points<S>,
     points: Points<S>,
     star: Star,
     near: Nearest<S>,
-    limit: Limit,
-    limits: Limits<S>,
+    known: Known<S>,
     looked: usize,
 }
 
@@ -170,30 +148,15 @@ impl<S: Simd> Octet<S> {
             near.take(slot, points.distances2(tri));
         }
         let limit = Limit::new(&of, &star, greatest(near.d2));
-        let limits = Limits::one(s, &limit);
-        Self { s, bounds, of, middle, points, star, near, limit, limits, looked: 0 }
+        let known = Known::new(s, middle, bounds, &limit);
+        Self { s, of, points, star, near, known, looked: 0 }
     }
 }
 
 impl<S: Simd> Seek<S> for Octet<S> {
     #[inline(always)]
-    fn middle(&self) -> &Points<S> {
-        &self.middle
-    }
-
-    #[inline(always)]
-    fn bounds(&self) -> &Aabb {
-        &self.bounds
-    }
-
-    #[inline(always)]
-    fn edge2(&self) -> f64 {
-        self.limit.edge2
-    }
-
-    #[inline(always)]
-    fn limits(&self) -> &Limits<S> {
-        &self.limits
+    fn known(&self) -> &Known<S> {
+        &self.known
     }
 
     #[inline(always)]
@@ -206,8 +169,8 @@ impl<S: Simd> Seek<S> for Octet<S> {
             self.near.take(pack.first + lane, d2);
         }
         self.star.take(way);
-        self.limit = Limit::new(&self.of, &self.star, greatest(self.near.d2));
-        self.limits = Limits::one(self.s, &self.limit);
+        let limit = Limit::new(&self.of, &self.star, greatest(self.near.d2));
+        self.known.narrow(self.s, &limit);
         self.looked <= OCTET_CAP
     }
 }

@@ -5,7 +5,7 @@
 //! the width of the machine's vectors, a distance comes out with the same bits.
 
 use super::Node;
-use super::limits::Limits;
+use super::limits::{Limit, Limits};
 use super::triangle::{LANES, Lanes, Points, Tri, Way};
 use crate::num::Aabb;
 use fearless_simd::{Simd, f64x8, prelude::*};
@@ -40,16 +40,35 @@ pub(super) struct Wide {
     root: Option<u32>,
 }
 
+/// Several points, and what can be nearest to one of them.
+pub(super) struct Known<S: Simd> {
+    /// Their middle, in every lane.
+    pub(super) middle: Points<S>,
+    /// Their box.
+    pub(super) bounds: Aabb,
+    /// Squared distance from the box beyond which nothing counts.
+    pub(super) edge2: f64,
+    /// What else counts.
+    pub(super) limits: Limits<S>,
+}
+
+impl<S: Simd> Known<S> {
+    #[inline(always)]
+    pub(super) fn new(s: S, middle: Points<S>, bounds: Aabb, limit: &Limit) -> Self {
+        Self { middle, bounds, edge2: limit.edge2, limits: Limits::one(s, limit) }
+    }
+
+    /// Less can be nearest than was thought.
+    #[inline(always)]
+    pub(super) fn narrow(&mut self, s: S, limit: &Limit) {
+        (self.edge2, self.limits) = (limit.edge2, Limits::one(s, limit));
+    }
+}
+
 /// Who walks the tree for the nearest triangles of several points.
 pub(super) trait Seek<S: Simd> {
-    /// The middle of the points, in every lane.
-    fn middle(&self) -> &Points<S>;
-    /// The box of the points.
-    fn bounds(&self) -> &Aabb;
-    /// Squared distance from the box beyond which nothing counts.
-    fn edge2(&self) -> f64;
-    /// What else counts.
-    fn limits(&self) -> &Limits<S>;
+    /// What is known of the points.
+    fn known(&self) -> &Known<S>;
     /// Takes the triangles of a pack whose bits are set, by the ways from them; `false` ends the walk.
     fn take(&mut self, pack: &Pack, way: &Way<S>, bits: u64) -> bool;
 }
@@ -215,22 +234,22 @@ impl Wide {
         open.clear();
         open.extend(self.root.map(|root| (0.0, root)));
         while let Some((gap2, child)) = open.pop() {
-            if gap2 > seeker.edge2() {
+            if gap2 > seeker.known().edge2 {
                 continue;
             }
             if child & PACK == 0 {
                 let node = &self.nodes[child as usize];
-                let Aabb { min, max } = *seeker.bounds();
+                let Aabb { min, max } = seeker.known().bounds;
                 let gap2 = node.gaps2(s, min, max);
-                let near = gap2.simd_le(f64x8::splat(s, seeker.edge2())).to_bitmask();
-                let way = node.ways(seeker.middle());
-                let bits = near & seeker.limits().can_win(&way);
+                let near = gap2.simd_le(f64x8::splat(s, seeker.known().edge2)).to_bitmask();
+                let way = node.ways(&seeker.known().middle);
+                let bits = near & seeker.known().limits.can_win(&way);
                 open_some(open, way.length2, gap2, bits, &node.child);
                 continue;
             }
             let pack = &self.packs[(child & !PACK) as usize];
-            let way = pack.lanes.ways(s, seeker.middle());
-            let bits = seeker.limits().can_win(&way) & ((1 << pack.count) - 1);
+            let way = pack.lanes.ways(s, &seeker.known().middle);
+            let bits = seeker.known().limits.can_win(&way) & ((1 << pack.count) - 1);
             if bits != 0 && !seeker.take(pack, &way, bits) {
                 return false;
             }
