@@ -127,16 +127,53 @@ impl<'a> Signs<'a> {
         hits: &[Hit],
         out: &mut [f64],
     ) {
-        let solid = self.solid;
-        let (first, region) = (self.known.len(), self.regions.len());
-        let near = |k: &Known| self.reach || k.at.distance(centre) <= radius;
-        self.last = self.last.filter(near);
+        let first = self.known.len();
+        // only where the way to it lies in a ball that is known to be sharp
+        self.last = self.last.filter(|k| self.reach || k.at.distance(centre) <= radius);
+        for start in points.clone().step_by(OCTET) {
+            let octet = start..(start + OCTET).min(points.end);
+            // most points lie in the free ball of one before
+            let last =
+                self.last.filter(|k| self.all_reached(k, &at[octet.clone()], &out[octet.clone()]));
+            let Some(Known { inside, .. }) = last else {
+                self.one_by_one(octet, (centre, radius), at, hits, out);
+                continue;
+            };
+            let end = octet.end - 1;
+            self.learn(Known { at: at[end], distance: out[end], inside });
+            out[octet].iter_mut().for_each(|f| *f = signed(*f, inside));
+        }
+        self.regions.push(first..self.known.len());
+    }
+
+    fn learn(&mut self, known: Known) {
+        self.known.push(known);
+        self.last = Some(known);
+    }
+
+    /// Whether points are in the box and reached from a known one.
+    fn all_reached(&self, known: &Known, at: &[DVec3], distances: &[f64]) -> bool {
+        let reached = |(&p, &distance): (&DVec3, &f64)| {
+            self.solid.inside.bounds().contains(p) & self.solid.reaches(known, p, distance)
+        };
+        // all of them: that is faster than to stop at the first
+        at.iter().zip(distances).map(reached).fold(true, |all, yes| all & yes)
+    }
+
+    fn one_by_one(
+        &mut self,
+        points: Range<usize>,
+        (centre, radius): (DVec3, f64),
+        at: &[DVec3],
+        hits: &[Hit],
+        out: &mut [f64],
+    ) {
+        let (solid, region) = (self.solid, self.regions.len());
         for i in points {
             let (p, distance) = (at[i], out[i]);
             if !solid.inside.bounds().contains(p) {
                 continue;
             }
-            // most points lie in the free ball of the one before
             let before = self.last.filter(|k| solid.reaches(k, p, distance)).map(|k| k.inside);
             let mut side = None;
             let inside = before.or_else(|| {
@@ -150,14 +187,11 @@ impl<'a> Signs<'a> {
             match inside {
                 Some(inside) => {
                     out[i] = signed(distance, inside);
-                    let known = Known { at: p, distance, inside };
-                    self.known.push(known);
-                    self.last = Some(known);
+                    self.learn(Known { at: p, distance, inside });
                 }
                 None => self.open.push(Open { point: i, region, side, answer: None }),
             }
         }
-        self.regions.push(first..self.known.len());
     }
 
     /// Signs of the points that are open: that of one on the same side of the same face, or of one from
@@ -247,7 +281,8 @@ impl<'a> Signs<'a> {
 impl Solid {
     /// Whether the way from a known point to one at that distance from the surface cannot meet it.
     fn reaches(&self, known: &Known, p: DVec3, distance: f64) -> bool {
-        known.at.distance(p) < known.distance.max(distance) - self.blur - self.touch
+        let free = known.distance.max(distance) - self.blur - self.touch;
+        free > 0.0 && known.at.distance_squared(p) < free * free
     }
 
     /// The face and the side of it on which a point lies, if all points there that are near each
