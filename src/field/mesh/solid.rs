@@ -30,11 +30,15 @@ pub(super) struct Solid {
 
 impl Solid {
     /// `all` is the tree over all faces, which serves where they are the surface as they are.
-    pub(super) fn new(surface: Surface, inside: Inside, blur: f64, all: Arc<Bvh>) -> Self {
+    pub(super) fn new(surface: Surface, mut inside: Inside, blur: f64, all: Arc<Bvh>) -> Self {
         let touch = 1e-12 * inside.bounds().size().length();
         let Surface { whole, triangles, trust, ghosts, culled, .. } = surface;
         let rest = || rayon::join(|| Bvh::new(&ghosts), || Bvh::new(&culled));
-        let own = || if whole { all } else { Arc::new(Bvh::new(&triangles)) };
+        let all = whole.then_some(all);
+        if all.is_none() {
+            inside.forget_distances();
+        }
+        let own = || all.unwrap_or_else(|| Arc::new(Bvh::new(&triangles)));
         let (surface, (ghosts, culled)) = rayon::join(own, rest);
         Self { surface, trust, ghosts, culled, inside, touch, blur }
     }
