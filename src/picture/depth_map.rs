@@ -1,6 +1,8 @@
 //! What one direction of light reaches first.
 
+use super::lanes::{Eight3, LANES, Vec8, put};
 use super::scene::Scene;
+use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x4, i32x8, mask32x8, prelude::*};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -31,6 +33,36 @@ pub(super) struct Spot {
     pub at: Vec3,
     /// Unit normal on the side that is seen.
     pub normal: Vec3,
+}
+
+/// Eight places in memory; the last one fills the lanes left over.
+pub(super) struct Packet {
+    at: Eight3,
+    normal: Eight3,
+}
+
+impl Packet {
+    /// Of at least one.
+    pub fn of(spots: &[Spot]) -> Self {
+        let mut packet = Self { at: [[0.0; LANES]; 3], normal: [[0.0; LANES]; 3] };
+        for lane in 0..LANES {
+            let Spot { at, normal } = spots[lane.min(spots.len() - 1)];
+            put(&mut packet.at, lane, at);
+            put(&mut packet.normal, lane, normal);
+        }
+        packet
+    }
+
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, s: S) -> Spots<S> {
+        Spots { at: Vec8::load(s, &self.at), normal: Vec8::load(s, &self.normal) }
+    }
+}
+
+/// Eight places to light.
+pub(super) struct Spots<S: Simd> {
+    pub at: Vec8<S>,
+    pub normal: Vec8<S>,
 }
 
 /// What casts the shadows: the mesh, with the points of a cell made one when it is fine.
@@ -119,8 +151,12 @@ pub(super) struct DepthMap {
     lift: f32,
     width: usize,
     height: usize,
+    /// Column by column, then one that is drawn into but not looked at.
     depth: Vec<f32>,
 }
+
+/// Texels of a column that are drawn at once, in two columns.
+const STRIP: usize = 4;
 
 impl DepthMap {
     pub fn new(caster: &Caster, toward: Vec3) -> Self {
@@ -134,40 +170,56 @@ impl DepthMap {
         let [width, height] = (size * scale).to_array().map(|n| n as usize + 3);
         let (across, along, origin) = (across * scale, along * scale, 1.0 - low * scale);
         let lift = LIFT / scale;
-        let depth = vec![f32::NEG_INFINITY; width * height];
+        let depth = vec![f32::NEG_INFINITY; (width + 1) * height + STRIP];
         let mut map = Self { toward, across, along, origin, lift, width, height, depth };
-        let at = |p: &Vec3| map.place(*p).extend(p.dot(toward));
-        let points: Vec<Vec3> = caster.points.iter().map(at).collect();
-        for f in caster.faces.iter() {
-            let [a, b, c] = f.map(|v| points[v as usize]);
-            let front = (b - a).truncate().perp_dot((c - a).truncate()) > 0.0;
-            if front || !caster.closed {
-                map.draw([a, b, c]);
-            }
-        }
+        dispatch!(Level::new(), s => map.draw_all(s, caster));
         map
     }
 
+    #[inline(always)]
+    fn draw_all<S: Simd>(&mut self, s: S, caster: &Caster) {
+        let at = |p: &Vec3| self.place(*p).extend(p.dot(self.toward)).extend(0.0).to_array();
+        let points: Vec<[f32; 4]> = caster.points.iter().map(at).collect();
+        for f in caster.faces.iter() {
+            let [a, b, c] = f.map(|v| &points[v as usize]);
+            let side = |p: &[f32; 4], i: usize| p[i] - a[i];
+            let front = side(b, 0) * side(c, 1) - side(b, 1) * side(c, 0) > 0.0;
+            if front || !caster.closed {
+                self.draw(s, [a, b, c]);
+            }
+        }
+    }
+
     /// Where a point falls: texels, 0.5 is the first centre.
+    #[inline(always)]
     fn place(&self, p: Vec3) -> Vec2 {
         Vec2::new(p.dot(self.across), p.dot(self.along)) + self.origin
     }
 
     /// Draws a triangle whose x, y are texels (0.5 is the first centre), z its nearness.
-    #[inline]
-    fn draw(&mut self, [a, b, c]: [Vec3; 3]) {
+    #[inline(always)]
+    fn draw<S: Simd>(&mut self, s: S, corners: [&[f32; 4]; 3]) {
+        let [a, b, c] = corners.map(|p| f32x4::simd_from(s, *p));
         // Texels count from 0, so that cutting off the fraction is rounding down.
-        let (low, high) = (a.min(b).min(c) + 0.5, a.max(b).max(c) + 0.5);
-        let (left, top) = (low.x as i32, low.y as i32);
-        let (right, bottom) = (high.x as i32, high.y as i32);
+        let texel = |v: f32x4<S>| -> [i32; 4] { (v + 0.5).max(0.0).to_int::<i32x4<S>>().into() };
+        let [left, top, ..] = texel(a.min(b).min(c));
+        let [right, bottom, ..] = texel(a.max(b).max(c));
         if left < right && top < bottom {
             let right = (right as usize).min(self.width);
             let bottom = (bottom as usize).min(self.height);
-            self.fill([a, b, c], left as usize..right, top as usize..bottom);
+            let corners = corners.map(|&[x, y, z, _]| Vec3::new(x, y, z));
+            self.fill(s, corners, left as usize..right, top as usize..bottom);
         }
     }
 
-    fn fill(&mut self, [a, b, c]: [Vec3; 3], columns: Range<usize>, rows: Range<usize>) {
+    #[inline(always)]
+    fn fill<S: Simd>(
+        &mut self,
+        s: S,
+        [a, b, c]: [Vec3; 3],
+        columns: Range<usize>,
+        rows: Range<usize>,
+    ) {
         let area = (b - a).truncate().perp_dot((c - a).truncate());
         if area == 0.0 {
             return;
@@ -182,42 +234,91 @@ impl DepthMap {
         };
         let (u, v) = (share(b, c), share(c, a));
         let depth = u * (a.z - c.z) + v * (b.z - c.z);
-        let right = Vec3::new(u.y, v.y, depth.y);
-        for (i, y) in rows.enumerate() {
-            let down = i as f32;
-            let mut at =
-                Vec3::new(u.x + u.z * down, v.x + v.z * down, c.z + depth.x + depth.z * down);
-            let row = y * self.width;
-            for texel in &mut self.depth[row + columns.start..row + columns.end] {
-                if at.x >= -SLACK && at.y >= -SLACK && at.x + at.y <= 1.0 + SLACK {
-                    *texel = texel.max(at.z);
+        let depth = depth.with_x(c.z + depth.x);
+        let splat = |v: f32| f32x8::splat(s, v);
+        // Lanes are four rows of a column, then those of the next.
+        let row = f32x8::simd_from(s, [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]);
+        let column = f32x8::simd_from(s, [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]);
+        for i in (0..rows.len()).step_by(STRIP) {
+            let down = row + splat(i as f32);
+            let has_row = down.simd_lt(splat(rows.len() as f32));
+            let pair = |left: f32x4<S>, step: f32| left.combine(left + step);
+            let start = |v: Vec3| pair((splat(v.x) + splat(v.z) * down).split().0, v.y);
+            let next = |now: f32x8<S>, step: f32| pair(now.split().1 + step, step);
+            let (mut us, mut vs, mut zs) = (start(u), start(v), start(depth));
+            for x in columns.clone().step_by(2) {
+                let has_column = column.simd_lt(splat((columns.end - x) as f32));
+                let within = us.simd_ge(splat(-SLACK))
+                    & vs.simd_ge(splat(-SLACK))
+                    & (us + vs).simd_le(splat(1.0 + SLACK));
+                let z = (within & has_row & has_column).select(zs, splat(f32::NEG_INFINITY));
+                let (left, right) = z.split();
+                let at = x * self.height + rows.start + i;
+                for (z, at) in [(left, at), (right, at + self.height)] {
+                    let strip = &mut self.depth[at..at + STRIP];
+                    z.max(f32x4::from_slice(s, strip)).store_slice(strip);
                 }
-                at += right;
+                (us, vs, zs) = (next(us, u.y), next(vs, v.y), next(zs, depth.y));
             }
         }
     }
 
-    /// The share of a spot that the light reaches, smooth between texels, and the distance to
-    /// what stands nearest in its way.
-    #[inline]
-    pub fn open(&self, spot: &Spot) -> (f32, f32) {
-        let at = spot.at + (spot.normal + self.toward * 0.5) * self.lift;
-        let place = self.place(at) - 0.5;
-        let (x, y) = (place.x as i32 as usize, place.y as i32 as usize);
-        if !(place.min_element() >= 0.0 && x + 1 < self.width && y + 1 < self.height) {
-            return (1.0, f32::INFINITY);
+    /// The share of each spot that the light reaches, smooth between texels, and how much nearer to
+    /// the light the texels round it are: those that stand in its way are more than 0. Only where
+    /// `asked`; elsewhere, and off the map, all of it, and nothing.
+    #[inline(always)]
+    pub fn open<S: Simd>(&self, s: S, spots: &Spots<S>, asked: mask32x8<S>) -> Open<S> {
+        let splat = |v: f32| f32x8::splat(s, v);
+        let lift = spots.normal.plus(Vec8::splat(s, self.toward * 0.5)).times(splat(self.lift));
+        let at = spots.at.plus(lift);
+        let x = at.dot(Vec8::splat(s, self.across)) + splat(self.origin.x) - splat(0.5);
+        let y = at.dot(Vec8::splat(s, self.along)) + splat(self.origin.y) - splat(0.5);
+        let inside = asked
+            & x.simd_ge(splat(0.0))
+            & y.simd_ge(splat(0.0))
+            & x.simd_lt(splat((self.width - 1) as f32))
+            & y.simd_lt(splat((self.height - 1) as f32));
+        if !inside.any_true() {
+            return Open { share: splat(1.0), gaps: None };
         }
-        let part = place - Vec2::new(x as f32, y as f32);
-        let first = y * self.width + x;
-        let near = at.dot(self.toward);
-        let gap = |i: usize| self.depth[i] - near;
-        let gaps = [first, first + 1, first + self.width, first + self.width + 1].map(gap);
-        let free = gaps.map(|gap| if gap > 0.0 { 0.0 } else { 1.0 });
-        let far = |gap: f32| if gap > 0.0 { gap } else { f32::INFINITY };
-        let nearest = gaps.into_iter().fold(f32::INFINITY, |n, gap| n.min(far(gap)));
-        let upper = free[0] + (free[1] - free[0]) * part.x;
-        let lower = free[2] + (free[3] - free[2]) * part.x;
-        (upper + (lower - upper) * part.y, nearest)
+        let (left, top) = (inside.select(x, splat(0.0)).trunc(), inside.select(y, splat(0.0)).trunc());
+        let first: [i32; LANES] = (left * splat(self.height as f32) + top).to_int::<i32x8<S>>().into();
+        let near = at.dot(Vec8::splat(s, self.toward));
+        let mut texels = [[0.0; LANES]; 4];
+        for (lane, first) in first.into_iter().enumerate() {
+            let first = first as usize;
+            let square = &self.depth[first..first + self.height + 2];
+            texels[0][lane] = square[0];
+            texels[1][lane] = square[self.height];
+            texels[2][lane] = square[1];
+            texels[3][lane] = square[self.height + 1];
+        }
+        let gaps = texels.map(|t| f32x8::simd_from(s, t) - near);
+        let free = gaps.map(|gap| gap.simd_gt(splat(0.0)).select(splat(0.0), splat(1.0)));
+        let (right, down) = (x - left, y - top);
+        let upper = free[0] + (free[1] - free[0]) * right;
+        let lower = free[2] + (free[3] - free[2]) * right;
+        let share = inside.select(upper + (lower - upper) * down, splat(1.0));
+        Open { share, gaps: Some((inside, gaps)) }
+    }
+}
+
+/// What [`DepthMap::open`] tells.
+pub(super) struct Open<S: Simd> {
+    /// The share of the light that arrives.
+    pub share: f32x8<S>,
+    gaps: Option<(mask32x8<S>, [f32x8<S>; 4])>,
+}
+
+impl<S: Simd> Open<S> {
+    /// The distance to what stands nearest in the light's way, or a smaller one.
+    #[inline(always)]
+    pub fn nearest(&self, other: f32x8<S>) -> f32x8<S> {
+        let Some((inside, gaps)) = self.gaps else {
+            return other;
+        };
+        let in_way = |gap: f32x8<S>| inside & gap.simd_gt(0.0);
+        gaps.into_iter().fold(other, |least, gap| in_way(gap).select(least.min(gap), least))
     }
 }
 

@@ -27,6 +27,7 @@ mod depth_map;
 mod font;
 mod ground;
 mod image;
+mod lanes;
 mod light;
 mod normals;
 mod raster;
