@@ -1,6 +1,6 @@
 //! What one direction of light reaches first.
 
-use super::lanes::{Eight3, LANES, Vec8, put};
+use super::lanes::{Eight, Eight3, LANES, Vec8, put};
 use super::scene::Scene;
 use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x4, i32x8, mask32x8, prelude::*};
 use glam::{Vec2, Vec3};
@@ -199,11 +199,11 @@ impl DepthMap {
     /// Draws a triangle whose x, y are texels (0.5 is the first centre), z its nearness.
     #[inline(always)]
     fn draw<S: Simd>(&mut self, s: S, corners: [&[f32; 4]; 3]) {
-        let [a, b, c] = corners.map(|p| f32x4::simd_from(s, *p));
-        // Texels count from 0, so that cutting off the fraction is rounding down.
-        let texel = |v: f32x4<S>| -> [i32; 4] { (v + 0.5).max(0.0).to_int::<i32x4<S>>().into() };
-        let [left, top, ..] = texel(a.min(b).min(c));
-        let [right, bottom, ..] = texel(a.max(b).max(c));
+        let [a, b, c] = corners;
+        let (a, b, c) = (f32x4::simd_from(s, *a), f32x4::simd_from(s, *b), f32x4::simd_from(s, *c));
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let [left, top, ..] = texel(s, low);
+        let [right, bottom, ..] = texel(s, high);
         if left < right && top < bottom {
             let right = (right as usize).min(self.width);
             let bottom = (bottom as usize).min(self.height);
@@ -242,10 +242,8 @@ impl DepthMap {
         for i in (0..rows.len()).step_by(STRIP) {
             let down = row + splat(i as f32);
             let has_row = down.simd_lt(splat(rows.len() as f32));
-            let pair = |left: f32x4<S>, step: f32| left.combine(left + step);
-            let start = |v: Vec3| pair((splat(v.x) + splat(v.z) * down).split().0, v.y);
-            let next = |now: f32x8<S>, step: f32| pair(now.split().1 + step, step);
-            let (mut us, mut vs, mut zs) = (start(u), start(v), start(depth));
+            let (mut us, mut vs) = (start(s, u, down), start(s, v, down));
+            let mut zs = start(s, depth, down);
             for x in columns.clone().step_by(2) {
                 let has_column = column.simd_lt(splat((columns.end - x) as f32));
                 let within = us.simd_ge(splat(-SLACK))
@@ -254,10 +252,8 @@ impl DepthMap {
                 let z = (within & has_row & has_column).select(zs, splat(f32::NEG_INFINITY));
                 let (left, right) = z.split();
                 let at = x * self.height + rows.start + i;
-                for (z, at) in [(left, at), (right, at + self.height)] {
-                    let strip = &mut self.depth[at..at + STRIP];
-                    z.max(f32x4::from_slice(s, strip)).store_slice(strip);
-                }
+                raise(s, left, &mut self.depth[at..at + STRIP]);
+                raise(s, right, &mut self.depth[at + self.height..at + self.height + STRIP]);
                 (us, vs, zs) = (next(us, u.y), next(vs, v.y), next(zs, depth.y));
             }
         }
@@ -285,22 +281,69 @@ impl DepthMap {
         let first: [i32; LANES] = (left * splat(self.height as f32) + top).to_int::<i32x8<S>>().into();
         let near = at.dot(Vec8::splat(s, self.toward));
         let mut texels = [[0.0; LANES]; 4];
-        for (lane, first) in first.into_iter().enumerate() {
-            let first = first as usize;
+        for lane in 0..LANES {
+            let first = first[lane] as usize;
             let square = &self.depth[first..first + self.height + 2];
             texels[0][lane] = square[0];
             texels[1][lane] = square[self.height];
             texels[2][lane] = square[1];
             texels[3][lane] = square[self.height + 1];
         }
-        let gaps = texels.map(|t| f32x8::simd_from(s, t) - near);
-        let free = gaps.map(|gap| gap.simd_gt(splat(0.0)).select(splat(0.0), splat(1.0)));
+        let [a, b, c, d] = texels;
+        let gaps = [gap(s, a, near), gap(s, b, near), gap(s, c, near), gap(s, d, near)];
         let (right, down) = (x - left, y - top);
-        let upper = free[0] + (free[1] - free[0]) * right;
-        let lower = free[2] + (free[3] - free[2]) * right;
-        let share = inside.select(upper + (lower - upper) * down, splat(1.0));
+        let upper = between(free(gaps[0]), free(gaps[1]), right);
+        let lower = between(free(gaps[2]), free(gaps[3]), right);
+        let share = inside.select(between(upper, lower, down), splat(1.0));
         Open { share, gaps: Some((inside, gaps)) }
     }
+}
+
+/// The first texel whose centre is not before a place; no less than 0.
+#[inline(always)]
+fn texel<S: Simd>(s: S, place: f32x4<S>) -> [i32; 4] {
+    // Texels count from 0, so that cutting off the fraction is rounding down.
+    let place = (place + f32x4::splat(s, 0.5)).max(f32x4::splat(s, 0.0));
+    place.to_int::<i32x4<S>>().into()
+}
+
+/// What starts at x and rises by y a column and by z a row, in some rows of two columns.
+#[inline(always)]
+fn start<S: Simd>(s: S, v: Vec3, down: f32x8<S>) -> f32x8<S> {
+    let (left, _) = (f32x8::splat(s, v.x) + f32x8::splat(s, v.z) * down).split();
+    left.combine(left + f32x4::splat(s, v.y))
+}
+
+/// The same two columns on.
+#[inline(always)]
+fn next<S: Simd>(now: f32x8<S>, step: f32) -> f32x8<S> {
+    let (_, before) = now.split();
+    let step = f32x4::splat(before.token(), step);
+    let left = before + step;
+    left.combine(left + step)
+}
+
+/// Raises a strip of texels to what is nearer.
+#[inline(always)]
+fn raise<S: Simd>(s: S, near: f32x4<S>, strip: &mut [f32]) {
+    near.max(f32x4::from_slice(s, strip)).store_slice(strip);
+}
+
+#[inline(always)]
+fn gap<S: Simd>(s: S, texels: Eight, near: f32x8<S>) -> f32x8<S> {
+    f32x8::simd_from(s, texels) - near
+}
+
+/// Whether a texel lets light through: 1, or 0.
+#[inline(always)]
+fn free<S: Simd>(gap: f32x8<S>) -> f32x8<S> {
+    let number = |v| f32x8::splat(gap.token(), v);
+    gap.simd_gt(number(0.0)).select(number(0.0), number(1.0))
+}
+
+#[inline(always)]
+fn between<S: Simd>(a: f32x8<S>, b: f32x8<S>, part: f32x8<S>) -> f32x8<S> {
+    a + (b - a) * part
 }
 
 /// What [`DepthMap::open`] tells.
@@ -317,8 +360,12 @@ impl<S: Simd> Open<S> {
         let Some((inside, gaps)) = self.gaps else {
             return other;
         };
-        let in_way = |gap: f32x8<S>| inside & gap.simd_gt(0.0);
-        gaps.into_iter().fold(other, |least, gap| in_way(gap).select(least.min(gap), least))
+        let mut least = other;
+        for gap in gaps {
+            let in_way = inside & gap.simd_gt(f32x8::splat(gap.token(), 0.0));
+            least = in_way.select(least.min(gap), least);
+        }
+        least
     }
 }
 
