@@ -30,6 +30,7 @@ mod image;
 mod lanes;
 mod light;
 mod normals;
+mod patch;
 mod raster;
 mod scene;
 mod shade;
