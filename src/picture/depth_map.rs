@@ -1,31 +1,16 @@
 //! What one direction of light reaches first.
 
+use super::caster::Caster;
 use super::lanes::{Eight, Eight3, LANES, Vec8, put};
-use super::scene::Scene;
 use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x4, i32x8, mask32x8, prelude::*};
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
-use std::borrow::Cow;
 use std::ops::Range;
 
-/// Texels along the longer side of a depth map for each pixel of the picture, and the bounds.
-/// More, and the maps take longer than the picture; fewer, and rods cast no shadow.
-const TEXELS: f32 = 0.4;
-const FEWEST: f32 = 96.0;
-const MOST: f32 = 384.0;
 /// Share by which a triangle is taken larger, so that rounding leaves no gap between two.
 const SLACK: f32 = 1e-4;
-/// Side of the cells within which a coarser copy has one point, in texels: errors stay under
-/// [`LIFT`].
-const COARSE: f32 = 1.4;
 /// How far a point is lifted off its surface before it is looked up, in texels. Less, and slanted
 /// surfaces shade themselves in stripes; more, and light leaks into corners.
 const LIFT: f32 = 1.3;
-
-/// Texels along the longer side of a depth map for a picture of that many pixels along its own.
-pub(super) fn texels(pixels: f32) -> f32 {
-    (pixels * TEXELS).clamp(FEWEST, MOST).round()
-}
 
 /// A place to light.
 #[derive(Clone, Copy)]
@@ -63,79 +48,6 @@ impl Packet {
 pub(super) struct Spots<S: Simd> {
     pub at: Vec8<S>,
     pub normal: Vec8<S>,
-}
-
-/// What casts the shadows: the mesh, with the points of a cell made one when it is fine.
-pub(super) struct Caster<'a> {
-    points: Cow<'a, [Vec3]>,
-    faces: Cow<'a, [[u32; 3]]>,
-    corners: [Vec3; 8],
-    /// Whether every ray from outside meets a face from its front first: the mesh is closed, and its
-    /// faces are turned outwards.
-    closed: bool,
-    /// Texels along the longer side of its depth maps.
-    texels: f32,
-}
-
-impl<'a> Caster<'a> {
-    /// For a picture with that many pixels along its longer side.
-    pub fn of(scene: &'a Scene, pixels: f32) -> Self {
-        let corners = scene.corners();
-        let texels = texels(pixels);
-        // With fewer faces than a map has texels a coarser copy saves nothing.
-        if (scene.faces.len() as f32) < texels * texels {
-            let (points, faces) = (Cow::from(&scene.points), Cow::from(&scene.faces));
-            let closed = closed(&points, &faces);
-            return Self { points, faces, corners, closed, texels };
-        }
-        let scale = texels / COARSE / (scene.max - scene.min).max_element();
-        let cell = |v: u32| {
-            // Unused points may lie anywhere; the casts saturate.
-            let [x, y, z] = ((scene.points[v as usize] - scene.min) * scale).to_array();
-            [x as u32, y as u32, z as u32]
-        };
-        let mut order: Vec<([u32; 3], u32)> =
-            (0..scene.points.len() as u32).into_par_iter().map(|v| (cell(v), v)).collect();
-        order.par_sort_unstable();
-        let mut name = vec![0; scene.points.len()];
-        let mut points = Vec::new();
-        for group in order.chunk_by(|a, b| a.0 == b.0) {
-            group.iter().for_each(|&(_, v)| name[v as usize] = points.len() as u32);
-            points.push(scene.points[group[0].1 as usize]);
-        }
-        let rename = |f: &[u32; 3]| f.map(|v| name[v as usize]);
-        let whole = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
-        let faces: Vec<[u32; 3]> = scene.faces.par_iter().map(rename).filter(whole).collect();
-        let closed = closed(&points, &faces);
-        Self { points: Cow::from(points), faces: Cow::from(faces), corners, closed, texels }
-    }
-}
-
-/// Whether the sides of faces cancel, as those of closed surfaces do, and they enclose a volume. Sides
-/// are summed by a hash, so this is wrong for one mesh in 2^64.
-fn closed(points: &[Vec3], faces: &[[u32; 3]]) -> bool {
-    let side = |a: u32, b: u32| {
-        let both = u64::from(a.min(b)) << 32 | u64::from(a.max(b));
-        let hash = splitmix(both);
-        if a < b { hash } else { hash.wrapping_neg() }
-    };
-    let sides = faces
-        .par_iter()
-        .map(|&[a, b, c]| side(a, b).wrapping_add(side(b, c)).wrapping_add(side(c, a)));
-    // in one order, so that round-off is the same on any number of threads
-    let volume = faces.iter().map(|f| {
-        let [a, b, c] = f.map(|v| points[v as usize].as_dvec3());
-        a.dot(b.cross(c))
-    });
-    sides.reduce(|| 0, u64::wrapping_add) == 0 && volume.sum::<f64>() > 0.0
-}
-
-/// A hash of all bits (the finaliser of SplitMix64).
-fn splitmix(x: u64) -> u64 {
-    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ x >> 31
 }
 
 /// How near to the light the first surface lies, on a grid across the light's direction.
@@ -180,12 +92,15 @@ impl DepthMap {
     fn draw_all<S: Simd>(&mut self, s: S, caster: &Caster) {
         let at = |p: &Vec3| self.place(*p).extend(p.dot(self.toward)).extend(0.0).to_array();
         let points: Vec<[f32; 4]> = caster.points.iter().map(at).collect();
-        for f in caster.faces.iter() {
-            let [a, b, c] = f.map(|v| &points[v as usize]);
-            let side = |p: &[f32; 4], i: usize| p[i] - a[i];
-            let front = side(b, 0) * side(c, 1) - side(b, 1) * side(c, 0) > 0.0;
-            if front || !caster.closed {
-                self.draw(s, [a, b, c]);
+        let toward = self.toward;
+        for group in caster.groups.iter().filter(|g| !g.looks_away(toward)) {
+            for &[a, b, c] in &caster.faces[group.faces.clone()] {
+                let [a, b, c] = [&points[a as usize], &points[b as usize], &points[c as usize]];
+                let side = |p: &[f32; 4], i: usize| p[i] - a[i];
+                let front = side(b, 0) * side(c, 1) - side(b, 1) * side(c, 0) > 0.0;
+                if front || !caster.closed {
+                    self.draw(s, [a, b, c]);
+                }
             }
         }
     }
@@ -371,53 +286,23 @@ impl<S: Simd> Open<S> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::caster::{Group, tests::hook};
+    use super::super::scene::Scene;
     use super::*;
-    use crate::mesh::TriMesh;
-
-    /// An L of unequal bricks: not convex, so that faces lie behind faces.
-    fn hook() -> TriMesh {
-        let profile = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
-        let at = |z: f64| profile.map(|[x, y]| glam::dvec3(x, y, z));
-        let points = [at(0.0), at(2.0)].concat();
-        let mut faces = vec![];
-        for [a, b, c] in [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]] {
-            faces.extend([[a, c, b], [a + 6, b + 6, c + 6]]);
-        }
-        for a in 0..6 {
-            let b = (a + 1) % 6;
-            faces.extend([[a, b, b + 6], [a, b + 6, a + 6]]);
-        }
-        TriMesh { points, faces }
-    }
 
     #[test]
     fn of_a_closed_mesh_the_fronts_alone_are_as_near_as_all() {
         let scene = Scene::new(&hook(), None).unwrap();
         let caster = Caster::of(&scene, 400.0);
         assert!(caster.closed);
-        let all = Caster { closed: false, ..Caster::of(&scene, 400.0) };
+        let mut all = Caster::of(&scene, 400.0);
+        all.closed = false;
+        all.groups = vec![Group::any(0..all.faces.len())];
         for toward in [Vec3::Z, Vec3::new(0.6, 0.7, 0.4), Vec3::new(-0.3, -0.8, -0.5)] {
             let maps = [&caster, &all].map(|c| DepthMap::new(c, toward.normalize()).depth);
             let far = maps[0].iter().zip(&maps[1]).filter(|(a, b)| *a < *b && *b - *a > 1e-4);
             // on outlines a face seen edge on may reach half a texel farther
             assert!(far.count() * 200 < maps[0].len(), "{toward}");
         }
-    }
-
-    #[test]
-    fn open_and_inverted_meshes_are_not_closed() {
-        let is_closed = |mesh: &TriMesh| {
-            let points: Vec<Vec3> = mesh.points.iter().map(|p| p.as_vec3()).collect();
-            closed(&points, &mesh.faces)
-        };
-        let mut mesh = hook();
-        assert!(is_closed(&mesh));
-        let inverted = TriMesh {
-            faces: mesh.faces.iter().map(|&[a, b, c]| [a, c, b]).collect(),
-            ..mesh.clone()
-        };
-        assert!(!is_closed(&inverted));
-        mesh.faces.pop();
-        assert!(!is_closed(&mesh));
     }
 }

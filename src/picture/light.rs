@@ -1,7 +1,8 @@
 //! The studio: light from many directions, each with a depth map of what it reaches first.
 
 use super::camera::Camera;
-use super::depth_map::{Caster, DepthMap, Packet, Spot, texels};
+use super::caster::{Caster, texels};
+use super::depth_map::{DepthMap, Packet, Spot};
 use super::lanes::{Eight, Eight3, LANES, Vec8, take};
 use super::scene::Scene;
 use fearless_simd::{Level, Simd, dispatch, f32x8, mask32x8, prelude::*};

@@ -21,8 +21,10 @@
 //! # Ok::<(), picture::PictureError>(())
 //! ```
 
+mod alike;
 mod animation;
 mod camera;
+mod caster;
 mod depth_map;
 mod font;
 mod ground;

@@ -201,7 +201,8 @@ impl Plane {
     pub fn shares(&self, x: usize, y: usize) -> [f32; 3] {
         let [first, right, down] = &self.edges;
         let (x, y) = (x as i64, y as i64);
-        [0, 1, 2].map(|k| (first[k] + right[k] * x + down[k] * y) as f32 / self.sum)
+        let share = |k: usize| (first[k] + right[k] * x + down[k] * y) as f32 / self.sum;
+        [share(0), share(1), share(2)]
     }
 }
 
