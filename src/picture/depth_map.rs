@@ -1,7 +1,7 @@
 //! What one direction of light reaches first.
 
 use super::caster::Caster;
-use super::lanes::{Eight, Eight3, LANES, Vec8, put};
+use super::lanes::{Eight3, LANES, Vec8, put};
 use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x4, i32x8, mask32x8, prelude::*};
 use glam::{Vec2, Vec3};
 use std::ops::Range;
@@ -67,6 +67,8 @@ pub(super) struct DepthMap {
     depth: Vec<f32>,
 }
 
+/// Faces looked at before some are drawn.
+const AT_ONCE: usize = 128;
 /// Texels of a column that are drawn at once, in two columns.
 const STRIP: usize = 4;
 
@@ -90,41 +92,49 @@ impl DepthMap {
 
     #[inline(always)]
     fn draw_all<S: Simd>(&mut self, s: S, caster: &Caster) {
-        let at = |p: &Vec3| self.place(*p).extend(p.dot(self.toward)).extend(0.0).to_array();
-        let points: Vec<[f32; 4]> = caster.points.iter().map(at).collect();
+        let points = self.places(s, &caster.points);
         let toward = self.toward;
+        let mut boxes = [([0; 3], [0; 4]); AT_ONCE];
         for group in caster.groups.iter().filter(|g| !g.looks_away(toward)) {
-            for &[a, b, c] in &caster.faces[group.faces.clone()] {
-                let [a, b, c] = [&points[a as usize], &points[b as usize], &points[c as usize]];
-                let side = |p: &[f32; 4], i: usize| p[i] - a[i];
-                let front = side(b, 0) * side(c, 1) - side(b, 1) * side(c, 0) > 0.0;
-                if front || !caster.closed {
-                    self.draw(s, [a, b, c]);
+            for faces in caster.faces[group.faces.clone()].chunks(AT_ONCE) {
+                // In two steps, and the first without a choice: they follow no rule.
+                let mut count = 0;
+                for face in faces {
+                    let [a, b, c] = *face;
+                    let corners = [&points[a as usize], &points[b as usize], &points[c as usize]];
+                    let (low, high, front) = span(s, corners);
+                    let some = (low[0] < high[0]) & (low[1] < high[1]);
+                    boxes[count] = (*face, [low[0], high[0], low[1], high[1]]);
+                    count += usize::from(some & (front | !caster.closed));
+                }
+                for (face, [left, right, top, bottom]) in &boxes[..count] {
+                    let right = (*right as usize).min(self.width);
+                    let bottom = (*bottom as usize).min(self.height);
+                    let corner = |v: u32| {
+                        let [x, y, z, _] = points[v as usize];
+                        Vec3::new(x, y, z)
+                    };
+                    let corners = [corner(face[0]), corner(face[1]), corner(face[2])];
+                    self.fill(s, corners, *left as usize..right, *top as usize..bottom);
                 }
             }
         }
     }
 
-    /// Where a point falls: texels, 0.5 is the first centre.
+    /// Where points fall, texels, and how near to the light.
     #[inline(always)]
-    fn place(&self, p: Vec3) -> Vec2 {
-        Vec2::new(p.dot(self.across), p.dot(self.along)) + self.origin
-    }
-
-    /// Draws a triangle whose x, y are texels (0.5 is the first centre), z its nearness.
-    #[inline(always)]
-    fn draw<S: Simd>(&mut self, s: S, corners: [&[f32; 4]; 3]) {
-        let [a, b, c] = corners;
-        let (a, b, c) = (f32x4::simd_from(s, *a), f32x4::simd_from(s, *b), f32x4::simd_from(s, *c));
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let [left, top, ..] = texel(s, low);
-        let [right, bottom, ..] = texel(s, high);
-        if left < right && top < bottom {
-            let right = (right as usize).min(self.width);
-            let bottom = (bottom as usize).min(self.height);
-            let corners = corners.map(|&[x, y, z, _]| Vec3::new(x, y, z));
-            self.fill(s, corners, left as usize..right, top as usize..bottom);
+    fn places<S: Simd>(&self, s: S, points: &[Vec3]) -> Vec<[f32; 4]> {
+        let (a, b, c) = (self.across, self.along, self.toward);
+        let x = f32x4::simd_from(s, [a.x, b.x, c.x, 0.0]);
+        let y = f32x4::simd_from(s, [a.y, b.y, c.y, 0.0]);
+        let z = f32x4::simd_from(s, [a.z, b.z, c.z, 0.0]);
+        let origin = f32x4::simd_from(s, [self.origin.x, self.origin.y, 0.0, 0.0]);
+        let mut places = vec![[0.0; 4]; points.len()];
+        for (p, place) in points.iter().zip(&mut places) {
+            let across = x * f32x4::splat(s, p.x) + y * f32x4::splat(s, p.y);
+            *place = (across + z * f32x4::splat(s, p.z) + origin).into();
         }
+        places
     }
 
     #[inline(always)]
@@ -192,26 +202,35 @@ impl DepthMap {
         if !inside.any_true() {
             return Open { share: splat(1.0), gaps: None };
         }
-        let (left, top) = (inside.select(x, splat(0.0)).trunc(), inside.select(y, splat(0.0)).trunc());
-        let first: [i32; LANES] = (left * splat(self.height as f32) + top).to_int::<i32x8<S>>().into();
+        let (left, top) =
+            (inside.select(x, splat(0.0)).trunc(), inside.select(y, splat(0.0)).trunc());
+        let first: [i32; LANES] =
+            (left * splat(self.height as f32) + top).to_int::<i32x8<S>>().into();
         let near = at.dot(Vec8::splat(s, self.toward));
-        let mut texels = [[0.0; LANES]; 4];
+        let mut texels = [[[0.0; 2]; LANES]; 2];
         for lane in 0..LANES {
             let first = first[lane] as usize;
             let square = &self.depth[first..first + self.height + 2];
-            texels[0][lane] = square[0];
-            texels[1][lane] = square[self.height];
-            texels[2][lane] = square[1];
-            texels[3][lane] = square[self.height + 1];
+            texels[0][lane] = [square[0], square[1]];
+            texels[1][lane] = [square[self.height], square[self.height + 1]];
         }
-        let [a, b, c, d] = texels;
-        let gaps = [gap(s, a, near), gap(s, b, near), gap(s, c, near), gap(s, d, near)];
+        let ((a, c), (b, d)) = (columns(s, &texels[0]), columns(s, &texels[1]));
+        let gaps = [a - near, b - near, c - near, d - near];
         let (right, down) = (x - left, y - top);
         let upper = between(free(gaps[0]), free(gaps[1]), right);
         let lower = between(free(gaps[2]), free(gaps[3]), right);
         let share = inside.select(between(upper, lower, down), splat(1.0));
         Open { share, gaps: Some((inside, gaps)) }
     }
+}
+
+/// The texels that a triangle may cover, in columns and rows, the first and the first beyond; and
+/// whether the light sees its front.
+#[inline(always)]
+fn span<S: Simd>(s: S, [a, b, c]: [&[f32; 4]; 3]) -> ([i32; 4], [i32; 4], bool) {
+    let front = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0;
+    let (a, b, c) = (f32x4::simd_from(s, *a), f32x4::simd_from(s, *b), f32x4::simd_from(s, *c));
+    (texel(s, a.min(b).min(c)), texel(s, a.max(b).max(c)), front)
 }
 
 /// The first texel whose centre is not before a place; no less than 0.
@@ -244,9 +263,12 @@ fn raise<S: Simd>(s: S, near: f32x4<S>, strip: &mut [f32]) {
     near.max(f32x4::from_slice(s, strip)).store_slice(strip);
 }
 
+/// The upper ones and the lower ones of pairs.
 #[inline(always)]
-fn gap<S: Simd>(s: S, texels: Eight, near: f32x8<S>) -> f32x8<S> {
-    f32x8::simd_from(s, texels) - near
+fn columns<S: Simd>(s: S, pairs: &[[f32; 2]; LANES]) -> (f32x8<S>, f32x8<S>) {
+    let (a, b) = pairs.as_flattened().split_at(LANES);
+    let (a, b) = (f32x8::from_slice(s, a), f32x8::from_slice(s, b));
+    (a.unzip_low(b), a.unzip_high(b))
 }
 
 /// Whether a texel lets light through: 1, or 0.

@@ -107,6 +107,12 @@ impl<'a> Raster<'a> {
 
 impl Band {
     fn draw(&mut self, face: u32, c: [Corner; 3], rows: usize, behind: f32) {
+        let (left, right) = covered(c.map(|c| c.x), self.width);
+        let (low, high) = covered(c.map(|c| c.y), self.top + rows);
+        let low = low.max(self.top);
+        if left >= right || low >= high {
+            return;
+        }
         let edges = Edges::of(c);
         if edges.turn == 0 {
             return;
@@ -114,10 +120,8 @@ impl Band {
         // Rows run down, so a face seen from outside turns the negative way.
         let back = if edges.turn > 0 { behind } else { 0.0 };
         let area = edges.turn.abs() as f32;
-        let (left, right) = covered(c.map(|c| c.x), self.width);
-        let (low, high) = covered(c.map(|c| c.y), self.top + rows);
         let near = c.map(|c| (c.near - back) / area);
-        for y in low.max(self.top)..high {
+        for y in low..high {
             let (mut w, step) = edges.at(left, y);
             let row = (y - self.top) * self.width;
             for at in row + left..row + right {
@@ -210,4 +214,3 @@ impl Plane {
 fn across(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
-

@@ -41,7 +41,9 @@ pub(super) fn draw(
         || Raster::new(scene, camera, samples.1, ROWS * SAMPLES),
         || Ground::new(scene, lights, width.max(height)),
     );
-    let painter = Painter { scene, camera, lights, ground, raster, style };
+    let (background, own) = (linear(style.background), linear(style.color));
+    let colors = [own, own.lerp(WARM, TINT)];
+    let painter = Painter { scene, camera, lights, ground, raster, background, colors };
     let bands = image.pixels_mut().par_chunks_mut(width * ROWS).enumerate();
     bands.for_each(|(index, pixels)| {
         let band = painter.raster.band(index, samples.0, samples.1);
@@ -55,20 +57,21 @@ struct Painter<'a> {
     lights: &'a Lights,
     ground: Ground,
     raster: Raster<'a>,
-    style: &'a Style,
+    /// Linear colour behind the mesh, and of its faces seen from their fronts and backs.
+    background: Vec3,
+    colors: [Vec3; 2],
 }
 
 impl Painter<'_> {
     fn paint(&self, band: &Band, pixels: &mut [[u8; 3]], top: usize) {
         let width = band.width / SAMPLES;
-        let background = linear(self.style.background);
         let mut gatherer = Gatherer::new(self.scene, self.camera, &self.raster, band);
         let mut sums = vec![Vec3::ZERO; pixels.len()];
         for (pixel, sum) in sums.iter_mut().enumerate() {
             let (x, y) = (pixel % width, pixel / width);
             let bare = gatherer.pixel(x, y, pixel) as f32;
             if bare > 0.0 {
-                *sum = background * (self.floor(x, top + y) * bare / ALL);
+                *sum = self.background * (self.floor(x, top + y) * bare / ALL);
             }
         }
         let patches = gatherer.finish();
@@ -77,14 +80,18 @@ impl Painter<'_> {
         for ((patch, spot), light) in patches.iter().zip(&spots).zip(lights) {
             sums[patch.pixel] += self.color(patch.behind, spot, light) * (patch.count / ALL);
         }
+        // Much of a picture is of one colour.
+        let mut last = (Vec3::ZERO, encode(Vec3::ZERO));
         for (pixel, sum) in pixels.iter_mut().zip(sums) {
-            *pixel = encode(sum);
+            if sum != last.0 {
+                last = (sum, encode(sum));
+            }
+            *pixel = last.1;
         }
     }
 
     fn color(&self, behind: bool, spot: &Spot, light: Vec3) -> Vec3 {
-        let own = linear(self.style.color);
-        let base = if behind { own.lerp(WARM, TINT) } else { own };
+        let base = self.colors[usize::from(behind)];
         let straight = spot.normal.dot(self.camera.sight(spot.at)).clamp(0.0, 1.0);
         (light + AMBIENT) * EXPOSURE * (base + SHEEN * (1.0 - straight).powi(4))
     }
