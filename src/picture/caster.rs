@@ -197,6 +197,40 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn groups_hold_all_faces_and_look_away_only_where_all_do() {
+        let ball =
+            |i: u32| (glam::Vec3::new((i / 30) as f32 - 15.0, (i % 30) as f32 - 15.0, 0.0), i);
+        let mut points: Vec<Vec3> = hook().points.iter().map(|p| p.as_vec3()).collect();
+        let mut faces = hook().faces;
+        // Small faces that look everywhere.
+        for (at, i) in (0..900).map(ball) {
+            let turn = glam::Quat::from_scaled_axis(at * 0.2);
+            let first = points.len() as u32;
+            points.extend([Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| turn * p + i as f32));
+            faces.push([first, first + 1, first + 2]);
+        }
+        // And a needle, whose normal means little.
+        let first = points.len() as u32;
+        points.extend([Vec3::ZERO, Vec3::X, Vec3::new(2.0, 1e-5, 0.0)]);
+        faces.push([first, first + 1, first + 2]);
+        let (groups, mut sorted) = grouped(&points, &faces, 1e-3);
+        let mut away = 0;
+        for toward in [Vec3::Z, Vec3::NEG_Z, Vec3::new(0.6, -0.8, 0.0), Vec3::new(0.36, 0.48, 0.8)]
+        {
+            for group in groups.iter().filter(|g| g.looks_away(toward)) {
+                away += group.faces.len();
+                for f in &sorted[group.faces.clone()] {
+                    assert!(normal(&points, f, 1e-3).dot(toward) < 0.0, "{toward}");
+                }
+            }
+        }
+        assert!(away > sorted.len(), "a third of the faces, at least: {away}");
+        sorted.sort_unstable();
+        faces.sort_unstable();
+        assert_eq!(sorted, faces);
+    }
+
+    #[test]
     fn open_and_inverted_meshes_are_not_closed() {
         let is_closed = |mesh: &TriMesh| {
             let points: Vec<Vec3> = mesh.points.iter().map(|p| p.as_vec3()).collect();
