@@ -23,6 +23,22 @@ struct Known {
     inside: bool,
 }
 
+/// A point that others may be reached from.
+#[derive(Clone, Copy)]
+struct Seen {
+    at: DVec3,
+    distance: f64,
+    sign: Sign,
+}
+
+#[derive(Clone, Copy)]
+enum Sign {
+    /// Whether it is inside.
+    Known(bool),
+    /// That of an open point.
+    Like(usize),
+}
+
 /// A face and the side of it on which a point lies.
 type Side = (u32, bool);
 
@@ -43,12 +59,14 @@ pub(super) struct Signs<'a> {
     solid: &'a Solid,
     /// With closed shells the way from one region to the next holds no surprise either.
     reach: bool,
-    /// The last point that became known.
-    last: Option<Known>,
+    /// The last points that became known and that stayed open.
+    last: [Option<Seen>; 2],
     known: Vec<Known>,
     /// Balls in which only faces part inside from outside: which of `known` lie in each.
     regions: Vec<Range<usize>>,
     open: Vec<Open>,
+    /// Points that have the sign of an open one.
+    like: Vec<(Range<usize>, usize)>,
 }
 
 /// The ball round some points in which their feet are looked for: twice as wide as their box.
@@ -64,8 +82,8 @@ fn balls(at: &[DVec3], each: usize) -> Vec<(DVec3, f64)> {
 impl<'a> Signs<'a> {
     pub(super) fn new(solid: &'a Solid) -> Self {
         let reach = solid.inside.is_closed() && solid.ghosts.is_empty();
-        let (known, regions, open) = (vec![], vec![], vec![]);
-        Self { solid, reach, last: None, known, regions, open }
+        let (known, regions, open, like) = (vec![], vec![], vec![], vec![]);
+        Self { solid, reach, last: [None; 2], known, regions, open, like }
     }
 
     /// The signed distances of any number of points, from the nearest triangle of each.
@@ -81,6 +99,7 @@ impl<'a> Signs<'a> {
         self.known.clear();
         self.regions.clear();
         self.open.clear();
+        self.like.clear();
         for (f, hit) in out.iter_mut().zip(hits) {
             *f = hit.distance2.sqrt();
         }
@@ -95,6 +114,16 @@ impl<'a> Signs<'a> {
             }
         }
         self.settle(at, out);
+        for (points, open) in self.like.drain(..) {
+            let inside = self.open[open].answer.unwrap_or(false);
+            out[points].iter_mut().for_each(|f| *f = signed(*f, inside));
+        }
+        // open no longer
+        if let [last, Some(Seen { at, distance, sign: Sign::Like(open) })] = &mut self.last {
+            let inside = self.open[*open].answer.unwrap_or(false);
+            *last = Some(Seen { at: *at, distance: *distance, sign: Sign::Known(inside) });
+            self.last[1] = None;
+        }
     }
 
     /// A run whose ball is not sharp: the same by octets, and by winding number where those are not
@@ -129,32 +158,42 @@ impl<'a> Signs<'a> {
     ) {
         let first = self.known.len();
         // only where the way to it lies in a ball that is known to be sharp
-        self.last = self.last.filter(|k| self.reach || k.at.distance(centre) <= radius);
+        let near = |k: &Seen| self.reach || k.at.distance(centre) <= radius;
+        self.last = self.last.map(|last| last.filter(near));
         for start in points.clone().step_by(OCTET) {
             let octet = start..(start + OCTET).min(points.end);
             // most points lie in the free ball of one before
-            let last =
-                self.last.filter(|k| self.all_reached(k, &at[octet.clone()], &out[octet.clone()]));
-            let Some(Known { inside, .. }) = last else {
-                self.one_by_one(octet, (centre, radius), at, hits, out);
-                continue;
-            };
-            let end = octet.end - 1;
-            self.learn(Known { at: at[end], distance: out[end], inside });
-            out[octet].iter_mut().for_each(|f| *f = signed(*f, inside));
+            let reached = |k: &&Seen| self.all_reached(k, &at[octet.clone()], &out[octet.clone()]);
+            match self.last.iter().flatten().find(reached).map(|k| k.sign) {
+                Some(sign) => self.learn(octet, sign, at, out),
+                None => self.one_by_one(octet, (centre, radius), at, hits, out),
+            }
         }
         self.regions.push(first..self.known.len());
     }
 
-    fn learn(&mut self, known: Known) {
-        self.known.push(known);
-        self.last = Some(known);
+    /// Points that all have one sign.
+    fn learn(&mut self, points: Range<usize>, sign: Sign, at: &[DVec3], out: &mut [f64]) {
+        let (at, distance) = (at[points.end - 1], out[points.end - 1]);
+        let seen = Some(Seen { at, distance, sign });
+        match sign {
+            Sign::Known(inside) => {
+                self.known.push(Known { at, distance, inside });
+                self.last[0] = seen;
+                out[points].iter_mut().for_each(|f| *f = signed(*f, inside));
+            }
+            Sign::Like(open) => {
+                self.last[1] = seen;
+                self.like.push((points, open));
+            }
+        }
     }
 
     /// Whether points are in the box and reached from a known one.
-    fn all_reached(&self, known: &Known, at: &[DVec3], distances: &[f64]) -> bool {
+    fn all_reached(&self, known: &Seen, at: &[DVec3], distances: &[f64]) -> bool {
         let reached = |(&p, &distance): (&DVec3, &f64)| {
-            self.solid.inside.bounds().contains(p) & self.solid.reaches(known, p, distance)
+            self.solid.inside.bounds().contains(p)
+                & self.solid.reaches((known.at, known.distance), p, distance)
         };
         // all of them: that is faster than to stop at the first
         at.iter().zip(distances).map(reached).fold(true, |all, yes| all & yes)
@@ -174,22 +213,24 @@ impl<'a> Signs<'a> {
             if !solid.inside.bounds().contains(p) {
                 continue;
             }
-            let before = self.last.filter(|k| solid.reaches(k, p, distance)).map(|k| k.inside);
+            let reached = |k: &&Seen| solid.reaches((k.at, k.distance), p, distance);
+            let before = self.last.iter().flatten().find(reached).map(|k| k.sign);
             let mut side = None;
-            let inside = before.or_else(|| {
+            let sign = before.or_else(|| {
                 // the way to the foot must lie in the ball that is known to be sharp
                 let near = solid.surface.nearest_of(p, &hits[i]).filter(|near| {
                     solid.inside.is_closed() || near.point.distance(centre) <= radius
                 })?;
                 side = solid.side(&near);
-                solid.by_face(&near)
+                solid.by_face(&near).map(Sign::Known)
             });
-            match inside {
-                Some(inside) => {
-                    out[i] = signed(distance, inside);
-                    self.learn(Known { at: p, distance, inside });
+            match sign {
+                Some(sign) => self.learn(i..i + 1, sign, at, out),
+                None => {
+                    let sign = Sign::Like(self.open.len());
+                    self.open.push(Open { point: i, region, side, answer: None });
+                    self.last[1] = Some(Seen { at: p, distance, sign });
                 }
-                None => self.open.push(Open { point: i, region, side, answer: None }),
             }
         }
     }
@@ -214,6 +255,7 @@ impl<'a> Signs<'a> {
                 self.open[n].answer.unwrap_or(false)
             });
             out[point] = signed(distance, inside);
+            self.open[n].answer = Some(inside);
             fresh.push(Known { at: p, distance, inside });
             let new = side.filter(|side| !sides.iter().any(|s| s.0 == *side));
             sides.extend(new.map(|side| (side, inside)));
@@ -236,7 +278,7 @@ impl<'a> Signs<'a> {
         let known = fresh.iter().rev().chain(self.known[self.regions[region].clone()].iter().rev());
         let reached = || {
             let mut known = known;
-            known.find(|k| self.solid.reaches(k, p, distance)).map(|k| k.inside)
+            known.find(|k| self.solid.reaches((k.at, k.distance), p, distance)).map(|k| k.inside)
         };
         same.or_else(reached)
     }
@@ -280,9 +322,9 @@ impl<'a> Signs<'a> {
 
 impl Solid {
     /// Whether the way from a known point to one at that distance from the surface cannot meet it.
-    fn reaches(&self, known: &Known, p: DVec3, distance: f64) -> bool {
-        let free = known.distance.max(distance) - self.blur - self.touch;
-        free > 0.0 && known.at.distance_squared(p) < free * free
+    fn reaches(&self, (from, free): (DVec3, f64), p: DVec3, distance: f64) -> bool {
+        let free = free.max(distance) - self.blur - self.touch;
+        free > 0.0 && from.distance_squared(p) < free * free
     }
 
     /// The face and the side of it on which a point lies, if all points there that are near each
