@@ -1,6 +1,8 @@
 use super::Element;
 use crate::num::Aabb;
+use crate::num::lanes::{LANES, Vec8};
 use crate::warp::{Ball, Barr};
+use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// The map from one element onto another through their normal coordinates:
@@ -50,6 +52,22 @@ impl Between {
                 let v = s.into.transform_point3(p);
                 let v = s.straighten.map_or(v, |b| b.pull(v)) * s.scale;
                 s.out.transform_point3(s.deform.map_or(v, |b| b.push(v)))
+            }
+        }
+    }
+
+    /// [`Between::pull`] of eight points, to the bit.
+    #[inline(always)]
+    pub(crate) fn pulled<S: Simd>(&self, s: S, p: Vec8<S>) -> Vec8<S> {
+        match &self.road {
+            Road::Same => p,
+            Road::Affine { map, .. } => p.mapped(map),
+            Road::Deformed(_) => {
+                let mut at = [DVec3::ZERO; LANES];
+                for (at, p) in at.iter_mut().zip(p.lanes()) {
+                    *at = self.pull(p);
+                }
+                Vec8::of(s, &at)
             }
         }
     }

@@ -1,4 +1,6 @@
 use crate::num::Interval;
+use crate::num::lanes::LANES;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// Covers the round-off of the few operations behind a weight.
 const SLACK: f64 = 1e-12;
@@ -37,6 +39,43 @@ impl Weighting {
         normalise(out);
     }
 
+    /// [`Weighting::weigh`] at eight points, to the bit; `out` is as long as `d`.
+    #[inline(always)]
+    pub(crate) fn weigh_all<S: Simd>(&self, s: S, d: &[f64x8<S>], out: &mut [f64x8<S>]) {
+        let mut sum = f64x8::splat(s, 0.0);
+        if let Some(smooth) = self.smooth() {
+            for (w, &d) in out.iter_mut().zip(d) {
+                *w = smooth.kernels(s, d);
+                sum += *w;
+            }
+        }
+        let fine = sum.simd_gt(f64x8::splat(s, 0.0)) & sum.simd_lt(f64x8::splat(s, f64::INFINITY));
+        if fine.all_true() {
+            for w in out {
+                *w /= sum;
+            }
+            return;
+        }
+        for lane in 0..LANES {
+            let row: Vec<f64> = d.iter().map(|d| d[lane]).collect();
+            let mut weights = vec![0.0; row.len()];
+            self.weigh(&row, &mut weights);
+            for (out, w) in out.iter_mut().zip(weights) {
+                out[lane] = w;
+            }
+        }
+    }
+
+    /// The smooth form where it is made of products alone.
+    fn smooth(&self) -> Option<Smooth> {
+        match *self {
+            Self::Smooth { epsilon, power } if power == 2.0 || power == 4.0 => {
+                Some(Smooth { epsilon, twice: power == 4.0 })
+            }
+            _ => None,
+        }
+    }
+
     /// Enclosures of the weights when each distance lies in its interval.
     ///
     /// With kernels in `[lo, hi]` a weight lies between `lo_i / (lo_i + sum of the others' hi)` and
@@ -66,6 +105,26 @@ impl Weighting {
             Self::InverseSquare { epsilon } => (d.max(0.0) + epsilon).powi(-2),
             Self::Transfinite => 1.0 / d.abs(),
         }
+    }
+}
+
+/// [`Weighting::Smooth`] of power 2, or 4.
+#[derive(Clone, Copy)]
+struct Smooth {
+    epsilon: f64,
+    /// Whether the power is 4.
+    twice: bool,
+}
+
+impl Smooth {
+    /// [`Weighting::kernel`] of eight distances.
+    #[inline(always)]
+    fn kernels<S: Simd>(&self, s: S, d: f64x8<S>) -> f64x8<S> {
+        let one = f64x8::splat(s, 1.0);
+        let base = d.abs() / self.epsilon + one;
+        let base = d.simd_lt(f64x8::splat(s, 0.0)).select(base, one / base);
+        let square = base * base;
+        if self.twice { square * square } else { square }
     }
 }
 
