@@ -113,8 +113,14 @@ impl Between {
     }
 }
 
-impl Road {
+impl Between {
     /// The whole map, where it is affine.
+    pub(crate) fn affine(&self) -> Option<DAffine3> {
+        self.road.affine()
+    }
+}
+
+impl Road {
     fn affine(&self) -> Option<DAffine3> {
         match self {
             Self::Same => Some(DAffine3::IDENTITY),

@@ -1,6 +1,6 @@
 use super::shape::Bent;
 use super::{Element, Shape};
-use crate::num::lanes::{LANES, Vec8};
+use crate::num::lanes::{Boxes, Interval8, LANES, Vec8};
 use crate::num::{Aabb, Interval};
 use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::{DMat3, DVec3};
@@ -59,6 +59,14 @@ impl Gauge {
     pub fn bound(&self, b: &Aabb) -> Interval {
         let d = self.distance(b.centre());
         Interval::ball(d, b.radius()).widen(1e-12 * (d.abs() + b.radius()))
+    }
+
+    /// [`Gauge::bound`] of eight boxes.
+    #[inline(always)]
+    pub(crate) fn ranges<S: Simd>(&self, s: S, b: &Boxes<S>) -> Interval8<S> {
+        let d = self.distances(s, b.centre);
+        let reach = b.radius + (d.abs() + b.radius) * 1e-12;
+        Interval8 { lo: d - reach, hi: d + reach }
     }
 
     /// A box round the element.

@@ -1,6 +1,8 @@
 //! Enclosures of convex combinations whose weights are known only to lie in intervals.
 
 use crate::num::Interval;
+use crate::num::lanes::Interval8;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// Values of `Σ w_i x_i` for weights in their intervals with `Σ w_i = 1`, x_i in theirs
 /// (METHODS D, item 2: greedy over the box-simplex).
@@ -29,6 +31,77 @@ fn greedy(w: &[Interval], order: &[usize], x: impl Fn(usize) -> f64) -> f64 {
         }
     }
     sum
+}
+
+/// [`combine`] over eight boxes, for numbers that are known.
+#[inline(always)]
+pub(super) fn combine_known<S: Simd>(
+    s: S,
+    w: &[Interval8<S>],
+    x: &[f64],
+    order: &mut Vec<usize>,
+) -> Interval8<S> {
+    if let Some(&first) = x.first()
+        && x.iter().all(|&x| x == first)
+    {
+        return Interval8::point(s, first);
+    }
+    order.clear();
+    order.extend(0..x.len());
+    order.sort_unstable_by(|&a, &b| x[a].total_cmp(&x[b]));
+    let zero = f64x8::splat(s, 0.0);
+    let (mut least, mut sum) = (zero, zero);
+    for (w, &x) in w.iter().zip(x) {
+        least += w.lo;
+        sum += w.lo * x;
+    }
+    let rest = (f64x8::splat(s, 1.0) - least).max(zero);
+    let mut out = Interval8 { lo: sum, hi: sum };
+    let mut left = rest;
+    for &i in order.iter() {
+        let extra = left.min(w[i].hi - w[i].lo);
+        left -= extra;
+        out.lo += extra * x[i];
+    }
+    left = rest;
+    for &i in order.iter().rev() {
+        let extra = left.min(w[i].hi - w[i].lo);
+        left -= extra;
+        out.hi += extra * x[i];
+    }
+    out
+}
+
+/// Slack of a weight below which a term hardly ever is the one that takes the last of the rest.
+const LOOSE: f64 = 0.01;
+
+/// [`combine`] over eight boxes, for finite x_i.
+///
+/// No order differs from lane to lane: for every m, `Σ w_i x_i = m + Σ w_i (x_i - m)` is at most
+/// `m + Σ max(lo_i (x_i - m), hi_i (x_i - m))`, and this is least where m is the x_i of the term
+/// that takes the last of the rest.
+#[inline(always)]
+pub(super) fn combine_all<S: Simd>(s: S, w: &[Interval8<S>], x: &[Interval8<S>]) -> Interval8<S> {
+    let loose = f64x8::splat(s, LOOSE);
+    let none = f64x8::splat(s, f64::INFINITY);
+    let mut out = Interval8 { lo: -none, hi: none };
+    let mut tried = false;
+    for (k, (own, at)) in w.iter().zip(x).enumerate() {
+        let last = k + 1 == w.len() && !tried;
+        if !last && !(own.hi - own.lo).simd_gt(loose).any_true() {
+            continue;
+        }
+        tried = true;
+        let Interval8 { mut lo, mut hi } = *at;
+        for (w, x) in w.iter().zip(x) {
+            let (below, above) = (x.lo - at.lo, x.hi - at.hi);
+            lo += (w.lo * below).min(w.hi * below);
+            hi += (w.lo * above).max(w.hi * above);
+        }
+        out.lo = out.lo.max(lo);
+        out.hi = out.hi.min(hi);
+    }
+    out
 }
 
 #[cfg(test)]

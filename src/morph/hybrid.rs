@@ -233,11 +233,7 @@ impl Hybrid {
             // exact zeros (eq. 5) would only cost time
             if some.any_true() {
                 let more = y.plus(f.maps[j].pulled(s, p).times(w));
-                y = Vec8 {
-                    x: some.select(more.x, y.x),
-                    y: some.select(more.y, y.y),
-                    z: some.select(more.z, y.z),
-                };
+                y = more.or(y, some);
             }
         }
         y
@@ -348,7 +344,7 @@ pub(super) fn offset(d: f64, distance: f64) -> f64 {
 
 /// [`offset`] at eight distances.
 #[inline(always)]
-fn offsets<S: Simd>(d: f64, distance: f64x8<S>) -> f64x8<S> {
+pub(super) fn offsets<S: Simd>(d: f64, distance: f64x8<S>) -> f64x8<S> {
     let (s, most) = (distance.token(), f64x8::splat(distance.token(), d.abs()));
     let size = (most - distance).max(f64x8::splat(s, 0.0)).min(most);
     if d < 0.0 { -size } else { size }
@@ -369,11 +365,23 @@ impl Field for Hybrid {
     }
 
     fn bound(&self, b: &Aabb) -> Interval {
-        let f = match self.blend {
-            Blend::Fields if !self.features.is_empty() => self.bound_by_fields(b),
-            _ => self.bound_by_maps(b),
-        };
-        f.widen(1e-9 * (1.0 + b.radius()))
+        let mut bound = [Interval::ALL];
+        self.bounds(&[*b], &mut bound);
+        bound[0]
+    }
+
+    fn bounds(&self, boxes: &[Aabb], out: &mut [Interval]) {
+        match self.blend {
+            Blend::Fields if !self.features.is_empty() => {
+                for (bound, b) in out.iter_mut().zip(boxes) {
+                    *bound = self.bound_by_fields(b);
+                }
+            }
+            _ => self.bounds_by_maps(boxes, out),
+        }
+        for (bound, b) in out.iter_mut().zip(boxes) {
+            *bound = bound.widen(1e-9 * (1.0 + b.radius()));
+        }
     }
 
     /// The maps may bring matter from anywhere, so nothing smaller can be promised.

@@ -1,5 +1,5 @@
 use crate::num::Interval;
-use crate::num::lanes::LANES;
+use crate::num::lanes::{Interval8, LANES};
 use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// Covers the round-off of the few operations behind a weight.
@@ -66,6 +66,22 @@ impl Weighting {
         }
     }
 
+    /// [`Weighting::enclose`] over eight boxes; `out` is as long as `d`.
+    #[inline(always)]
+    pub(crate) fn enclose_all<S: Simd>(&self, s: S, d: &[Interval8<S>], out: &mut [Interval8<S>]) {
+        if let Some(smooth) = self.smooth() {
+            return smooth.shares(s, d, out);
+        }
+        for lane in 0..LANES {
+            let row: Vec<_> = d.iter().map(|d| Interval::new(d.lo[lane], d.hi[lane])).collect();
+            let mut ranges = vec![Interval::ALL; row.len()];
+            self.enclose(&row, &mut ranges);
+            for (out, range) in out.iter_mut().zip(ranges) {
+                (out.lo[lane], out.hi[lane]) = (range.lo, range.hi);
+            }
+        }
+    }
+
     /// The smooth form where it is made of products alone.
     fn smooth(&self) -> Option<Smooth> {
         match *self {
@@ -125,6 +141,31 @@ impl Smooth {
         let base = d.simd_lt(f64x8::splat(s, 0.0)).select(base, one / base);
         let square = base * base;
         if self.twice { square * square } else { square }
+    }
+}
+
+impl Smooth {
+    /// [`shares`] of eight boxes.
+    #[inline(always)]
+    fn shares<S: Simd>(&self, s: S, d: &[Interval8<S>], out: &mut [Interval8<S>]) {
+        let mut left = Interval8::point(s, 0.0);
+        for (o, d) in out.iter_mut().zip(d) {
+            *o = left;
+            left.lo += self.kernels(s, d.hi);
+            left.hi += self.kernels(s, d.lo);
+        }
+        let (zero, one) = (f64x8::splat(s, 0.0), f64x8::splat(s, 1.0));
+        let mut right = Interval8::point(s, 0.0);
+        for (o, d) in out.iter_mut().zip(d).rev() {
+            let (own_lo, own_hi) = (self.kernels(s, d.hi), self.kernels(s, d.lo));
+            let lo = own_lo / (own_lo + (o.hi + right.hi));
+            let hi = own_hi / (own_hi + (o.lo + right.lo));
+            let lo = lo.is_nan().select(zero, lo) - SLACK;
+            let hi = hi.is_nan().select(one, hi) + SLACK;
+            *o = Interval8 { lo: lo.max(zero).min(one), hi: hi.max(zero).min(one) };
+            right.lo += own_lo;
+            right.hi += own_hi;
+        }
     }
 }
 
