@@ -107,6 +107,8 @@ pub(super) fn combine_all<S: Simd>(s: S, w: &[Interval8<S>], x: &[Interval8<S>])
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fearless_simd::{Level, dispatch};
+    use proptest::prelude::*;
 
     #[test]
     fn holds_every_combination_and_is_reached() {
@@ -129,5 +131,40 @@ mod tests {
             }
         }
         assert!((least - f.lo).abs() < 1e-9 && (most - f.hi).abs() < 1e-9);
+    }
+
+    fn ranges(lo: f64, width: f64) -> impl Strategy<Value = Vec<Interval>> {
+        let one = (-lo..lo, 0.0..width).prop_map(|(lo, width)| Interval::new(lo, lo + width));
+        prop::collection::vec(one, 5)
+    }
+
+    proptest! {
+        /// In every lane no less than what one box gives alone, and no more where weights are loose.
+        #[test]
+        fn eight_at_once_are_eight_alone(
+            shares in prop::array::uniform5((0.05..1.0f64, 0.02..0.1f64)),
+            x in ranges(100.0, 20.0),
+        ) {
+            let sum: f64 = shares.iter().map(|(w, _)| w).sum();
+            let w = shares.map(|(w, r)| Interval::ball(w / sum, r).clamp(0.0, 1.0));
+            let known: Vec<f64> = x.iter().map(|x| x.lo).collect();
+            let points: Vec<_> = known.iter().map(|&x| Interval::point(x)).collect();
+            let (all, all_known) = dispatch!(Level::new(), s => {
+                let lanes = |x: &Interval| Interval8 {
+                    lo: f64x8::splat(s, x.lo),
+                    hi: f64x8::splat(s, x.hi),
+                };
+                let (w, x) = (w.each_ref().map(lanes), x.iter().map(lanes).collect::<Vec<_>>());
+                let some = combine_all(s, &w, &x).lanes();
+                (some, combine_known(s, &w, &known, &mut Vec::new()).lanes())
+            });
+            for (all, x) in [(all, &x), (all_known, &points)] {
+                let alone = combine(&w, x, &mut Vec::new());
+                for got in all {
+                    prop_assert!((got.lo - alone.lo).abs() < 1e-9, "{got:?} {alone:?}");
+                    prop_assert!((got.hi - alone.hi).abs() < 1e-9, "{got:?} {alone:?}");
+                }
+            }
+        }
     }
 }

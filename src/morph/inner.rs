@@ -294,6 +294,7 @@ fn grow_bound(g: &[Interval], lam: &[Interval], reach: Interval) -> Interval {
 mod tests {
     use super::*;
     use crate::morph::plan::Form;
+    use fearless_simd::{Level, dispatch};
     use proptest::prelude::*;
 
     fn mixes() -> Vec<Mix> {
@@ -338,6 +339,31 @@ mod tests {
                 let v = mix.value(&gv, &lam, &at);
                 let b = mix.bound(&gi, &lam_range, &range, &mut Vec::new());
                 prop_assert!(b.widen(1e-9).contains(v), "{mix:?}: {v} not in {b:?}");
+            }
+        }
+
+        /// What a point gives alone and among eight.
+        #[test]
+        fn eight_at_once_are_eight_alone(
+            g in prop::array::uniform3(prop::array::uniform8(-5.0..5.0f64)),
+            raw in prop::array::uniform3(prop::array::uniform8((0.0..1.0f64, prop::bool::weighted(0.3)))),
+            reach in 0.5..6.0f64,
+        ) {
+            let raw = raw.map(|r| r.map(|(x, zero)| if zero { 0.0 } else { x }));
+            let sum: [f64; LANES] = std::array::from_fn(|i| raw.iter().map(|r| r[i]).sum());
+            prop_assume!(sum.iter().all(|&s| s > 1e-3));
+            let lam: [[f64; LANES]; 3] =
+                raw.map(|r| std::array::from_fn(|i| r[i] / sum[i]));
+            let at = Local { reach, depth: reach, apart: 0.3, level: 0.4 };
+            for mix in mixes() {
+                let all: [f64; LANES] = dispatch!(Level::new(), s => {
+                    let (g, lam) = (g.map(|g| f64x8::simd_from(s, g)), lam.map(|l| f64x8::simd_from(s, l)));
+                    mix.values(s, &g, &lam, &Local8::splat(s, &at)).into()
+                });
+                for i in 0..LANES {
+                    let alone = mix.value(&g.map(|g| g[i]), &lam.map(|l| l[i]), &at);
+                    prop_assert_eq!(all[i], alone, "{:?}", mix);
+                }
             }
         }
 

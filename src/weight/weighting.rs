@@ -249,6 +249,7 @@ fn inverse(d: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fearless_simd::{Level, dispatch};
     use proptest::prelude::*;
 
     const ALL: [Weighting; 4] = [
@@ -306,6 +307,42 @@ mod tests {
                 let got = weights(w, &d);
                 prop_assert!((got.iter().sum::<f64>() - 1.0).abs() < 1e-12);
                 prop_assert!(got.iter().all(|w| (0.0..=1.0).contains(w)));
+            }
+        }
+
+        /// What a point or box gives alone and among eight.
+        #[test]
+        fn eight_at_once_are_eight_alone(
+            d in prop::collection::vec(prop::array::uniform8((-200.0..500.0f64, 0.0..30.0f64)), 1..9)
+        ) {
+            for w in ALL {
+                let (values, ranges) = dispatch!(Level::new(), s => {
+                    let at: Vec<_> =
+                        d.iter().map(|d| f64x8::simd_from(s, d.map(|(d, _)| d))).collect();
+                    let of = |sign: f64| move |(d, r): (f64, f64)| d + sign * r;
+                    let over: Vec<_> = d
+                        .iter()
+                        .map(|d| Interval8 {
+                            lo: f64x8::simd_from(s, d.map(of(-1.0))),
+                            hi: f64x8::simd_from(s, d.map(of(1.0))),
+                        })
+                        .collect();
+                    let (mut values, mut ranges) = (at.clone(), over.clone());
+                    w.weigh_all(s, &at, &mut values);
+                    w.enclose_all(s, &over, &mut ranges);
+                    let values: Vec<[f64; LANES]> = values.into_iter().map(Into::into).collect();
+                    (values, ranges.into_iter().map(Interval8::lanes).collect::<Vec<_>>())
+                });
+                for lane in 0..LANES {
+                    let row: Vec<f64> = d.iter().map(|d| d[lane].0).collect();
+                    let alone = weights(w, &row);
+                    prop_assert!(values.iter().zip(&alone).all(|(v, a)| v[lane] == *a));
+                    let row: Vec<_> =
+                        d.iter().map(|d| Interval::ball(d[lane].0, d[lane].1)).collect();
+                    let mut alone = vec![Interval::ALL; row.len()];
+                    w.enclose(&row, &mut alone);
+                    prop_assert!(ranges.iter().zip(&alone).all(|(r, a)| r[lane] == *a));
+                }
             }
         }
 
