@@ -72,8 +72,9 @@ pub(super) fn combine_known<S: Simd>(
     out
 }
 
-/// Slack of a weight below which a term hardly ever is the one that takes the last of the rest.
-const LOOSE: f64 = 0.01;
+/// A weight with less than this share of the greatest slack hardly ever is the one that takes the last
+/// of the rest.
+const LOOSE: f64 = 1.0 / 64.0;
 
 /// [`combine`] over eight boxes, for finite x_i.
 ///
@@ -82,16 +83,17 @@ const LOOSE: f64 = 0.01;
 /// that takes the last of the rest.
 #[inline(always)]
 pub(super) fn combine_all<S: Simd>(s: S, w: &[Interval8<S>], x: &[Interval8<S>]) -> Interval8<S> {
-    let loose = f64x8::splat(s, LOOSE);
     let none = f64x8::splat(s, f64::INFINITY);
+    let mut loose = f64x8::splat(s, 0.0);
+    for w in w {
+        loose = loose.max((w.hi - w.lo) * LOOSE);
+    }
     let mut out = Interval8 { lo: -none, hi: none };
-    let mut tried = false;
-    for (k, (own, at)) in w.iter().zip(x).enumerate() {
-        let last = k + 1 == w.len() && !tried;
-        if !last && !(own.hi - own.lo).simd_gt(loose).any_true() {
+    for (own, at) in w.iter().zip(x) {
+        // the one with the greatest slack is always tried
+        if !(own.hi - own.lo).simd_ge(loose).any_true() {
             continue;
         }
-        tried = true;
         let Interval8 { mut lo, mut hi } = *at;
         for (w, x) in w.iter().zip(x) {
             let (below, above) = (x.lo - at.lo, x.hi - at.hi);
