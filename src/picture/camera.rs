@@ -1,6 +1,8 @@
 //! Where the camera stands, and which pixel a point falls on.
 
+use super::lanes::Vec8;
 use super::scene::Scene;
+use fearless_simd::{Simd, f32x8, prelude::*};
 use glam::{Vec2, Vec3};
 use std::str::FromStr;
 
@@ -128,22 +130,26 @@ impl Camera {
         self.eye.map_or(step, |eye| step / (eye * eye))
     }
 
-    /// The point that falls there.
-    pub fn unsee(&self, seen: Seen) -> Vec3 {
-        let (origin, direction) = self.ray(seen.at);
-        match self.eye {
-            None => origin + self.toward * seen.near,
-            // The direction advances one unit of depth a unit.
-            Some(_) => origin + direction / seen.near,
-        }
+    /// What to find points by that fall somewhere.
+    pub fn eye(&self) -> Eye {
+        Eye { toward: self.toward, far: self.eye }
+    }
+
+    /// What stands on the plane through the origin, upright to the line of sight, in a column of the
+    /// picture: with [`Camera::along`], where a pixel looks.
+    pub fn across(&self, x: f32) -> Vec3 {
+        self.right * ((x - self.half.x) / self.zoom + self.middle.x)
+    }
+
+    /// The same for a row.
+    pub fn along(&self, y: f32) -> Vec3 {
+        self.up * ((self.half.y - y) / self.zoom + self.middle.y)
     }
 
     /// The line of sight through a place in the picture: where it starts, and its direction,
     /// one unit long along the camera's axis.
     pub fn ray(&self, at: Vec2) -> (Vec3, Vec3) {
-        let from_middle = Vec2::new(at.x - self.half.x, self.half.y - at.y);
-        let xy = from_middle / self.zoom + self.middle;
-        let on_plane = self.right * xy.x + self.up * xy.y;
+        let on_plane = self.across(at.x) + self.along(at.y);
         match self.eye {
             None => (on_plane, -self.toward),
             Some(eye) => (self.toward * eye, (on_plane - self.toward * eye) / eye),
@@ -153,5 +159,36 @@ impl Camera {
     /// Unit vector from a point to the eye.
     pub fn sight(&self, p: Vec3) -> Vec3 {
         self.eye.map_or(self.toward, |eye| (self.toward * eye - p).normalize_or(self.toward))
+    }
+}
+
+/// Where the camera stands: finds points again by what is seen of them, eight at a time.
+pub(super) struct Eye {
+    toward: Vec3,
+    /// Distance from the origin; none without perspective.
+    far: Option<f32>,
+}
+
+impl Eye {
+    /// The points behind or before some on the plane through the origin, that near.
+    #[inline(always)]
+    pub fn unsee<S: Simd>(&self, plane: Vec8<S>, near: f32x8<S>) -> Vec8<S> {
+        let s = near.token();
+        let Some(far) = self.far else {
+            return plane.plus(Vec8::splat(s, self.toward).times(near));
+        };
+        // The direction advances one unit of depth a unit.
+        let eye = Vec8::splat(s, self.toward * far);
+        eye.plus(plane.less(eye).over(f32x8::splat(s, far)).over(near))
+    }
+
+    /// Unit vectors from points to the eye.
+    #[inline(always)]
+    pub fn sight<S: Simd>(&self, points: Vec8<S>) -> Vec8<S> {
+        let toward = Vec8::splat(points.x.token(), self.toward);
+        let Some(far) = self.far else {
+            return toward;
+        };
+        Vec8::splat(points.x.token(), self.toward * far).less(points).unit_or(toward)
     }
 }

@@ -1,29 +1,16 @@
 //! What one direction of light reaches first.
 
-use super::scene::Scene;
+use super::caster::Caster;
+use super::lanes::{Eight3, LANES, Vec8, put};
+use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x4, i32x8, mask32x8, prelude::*};
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
-use std::borrow::Cow;
 use std::ops::Range;
 
-/// Texels along the longer side of a depth map for each pixel of the picture, and the bounds.
-/// More, and the maps take longer than the picture; fewer, and rods cast no shadow.
-const TEXELS: f32 = 0.4;
-const FEWEST: f32 = 96.0;
-const MOST: f32 = 384.0;
 /// Share by which a triangle is taken larger, so that rounding leaves no gap between two.
 const SLACK: f32 = 1e-4;
-/// Side of the cells within which a coarser copy has one point, in texels: errors stay under
-/// [`LIFT`].
-const COARSE: f32 = 1.4;
 /// How far a point is lifted off its surface before it is looked up, in texels. Less, and slanted
 /// surfaces shade themselves in stripes; more, and light leaks into corners.
 const LIFT: f32 = 1.3;
-
-/// Texels along the longer side of a depth map for a picture of that many pixels along its own.
-pub(super) fn texels(pixels: f32) -> f32 {
-    (pixels * TEXELS).clamp(FEWEST, MOST).round()
-}
 
 /// A place to light.
 #[derive(Clone, Copy)]
@@ -33,77 +20,34 @@ pub(super) struct Spot {
     pub normal: Vec3,
 }
 
-/// What casts the shadows: the mesh, with the points of a cell made one when it is fine.
-pub(super) struct Caster<'a> {
-    points: Cow<'a, [Vec3]>,
-    faces: Cow<'a, [[u32; 3]]>,
-    corners: [Vec3; 8],
-    /// Whether every ray from outside meets a face from its front first: the mesh is closed, and its
-    /// faces are turned outwards.
-    closed: bool,
-    /// Texels along the longer side of its depth maps.
-    texels: f32,
+/// Eight places in memory; the last one fills the lanes left over.
+pub(super) struct Packet {
+    at: Eight3,
+    normal: Eight3,
 }
 
-impl<'a> Caster<'a> {
-    /// For a picture with that many pixels along its longer side.
-    pub fn of(scene: &'a Scene, pixels: f32) -> Self {
-        let corners = scene.corners();
-        let texels = texels(pixels);
-        // With fewer faces than a map has texels a coarser copy saves nothing.
-        if (scene.faces.len() as f32) < texels * texels {
-            let (points, faces) = (Cow::from(&scene.points), Cow::from(&scene.faces));
-            let closed = closed(&points, &faces);
-            return Self { points, faces, corners, closed, texels };
+impl Packet {
+    /// Of at least one.
+    pub fn of(spots: &[Spot]) -> Self {
+        let mut packet = Self { at: [[0.0; LANES]; 3], normal: [[0.0; LANES]; 3] };
+        for lane in 0..LANES {
+            let Spot { at, normal } = spots[lane.min(spots.len() - 1)];
+            put(&mut packet.at, lane, at);
+            put(&mut packet.normal, lane, normal);
         }
-        let scale = texels / COARSE / (scene.max - scene.min).max_element();
-        let cell = |v: u32| {
-            // Unused points may lie anywhere; the casts saturate.
-            let [x, y, z] = ((scene.points[v as usize] - scene.min) * scale).to_array();
-            [x as u32, y as u32, z as u32]
-        };
-        let mut order: Vec<([u32; 3], u32)> =
-            (0..scene.points.len() as u32).into_par_iter().map(|v| (cell(v), v)).collect();
-        order.par_sort_unstable();
-        let mut name = vec![0; scene.points.len()];
-        let mut points = Vec::new();
-        for group in order.chunk_by(|a, b| a.0 == b.0) {
-            group.iter().for_each(|&(_, v)| name[v as usize] = points.len() as u32);
-            points.push(scene.points[group[0].1 as usize]);
-        }
-        let rename = |f: &[u32; 3]| f.map(|v| name[v as usize]);
-        let whole = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
-        let faces: Vec<[u32; 3]> = scene.faces.par_iter().map(rename).filter(whole).collect();
-        let closed = closed(&points, &faces);
-        Self { points: Cow::from(points), faces: Cow::from(faces), corners, closed, texels }
+        packet
+    }
+
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, s: S) -> Spots<S> {
+        Spots { at: Vec8::load(s, &self.at), normal: Vec8::load(s, &self.normal) }
     }
 }
 
-/// Whether the sides of faces cancel, as those of closed surfaces do, and they enclose a volume. Sides
-/// are summed by a hash, so this is wrong for one mesh in 2^64.
-fn closed(points: &[Vec3], faces: &[[u32; 3]]) -> bool {
-    let side = |a: u32, b: u32| {
-        let both = u64::from(a.min(b)) << 32 | u64::from(a.max(b));
-        let hash = splitmix(both);
-        if a < b { hash } else { hash.wrapping_neg() }
-    };
-    let sides = faces
-        .par_iter()
-        .map(|&[a, b, c]| side(a, b).wrapping_add(side(b, c)).wrapping_add(side(c, a)));
-    // in one order, so that round-off is the same on any number of threads
-    let volume = faces.iter().map(|f| {
-        let [a, b, c] = f.map(|v| points[v as usize].as_dvec3());
-        a.dot(b.cross(c))
-    });
-    sides.reduce(|| 0, u64::wrapping_add) == 0 && volume.sum::<f64>() > 0.0
-}
-
-/// A hash of all bits (the finaliser of SplitMix64).
-fn splitmix(x: u64) -> u64 {
-    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ x >> 31
+/// Eight places to light.
+pub(super) struct Spots<S: Simd> {
+    pub at: Vec8<S>,
+    pub normal: Vec8<S>,
 }
 
 /// How near to the light the first surface lies, on a grid across the light's direction.
@@ -119,8 +63,14 @@ pub(super) struct DepthMap {
     lift: f32,
     width: usize,
     height: usize,
+    /// Column by column, then one that is drawn into but not looked at.
     depth: Vec<f32>,
 }
+
+/// Faces looked at before some are drawn.
+const AT_ONCE: usize = 128;
+/// Texels of a column that are drawn at once, in two columns.
+const STRIP: usize = 4;
 
 impl DepthMap {
     pub fn new(caster: &Caster, toward: Vec3) -> Self {
@@ -134,40 +84,67 @@ impl DepthMap {
         let [width, height] = (size * scale).to_array().map(|n| n as usize + 3);
         let (across, along, origin) = (across * scale, along * scale, 1.0 - low * scale);
         let lift = LIFT / scale;
-        let depth = vec![f32::NEG_INFINITY; width * height];
+        let depth = vec![f32::NEG_INFINITY; (width + 1) * height + STRIP];
         let mut map = Self { toward, across, along, origin, lift, width, height, depth };
-        let at = |p: &Vec3| map.place(*p).extend(p.dot(toward));
-        let points: Vec<Vec3> = caster.points.iter().map(at).collect();
-        for f in caster.faces.iter() {
-            let [a, b, c] = f.map(|v| points[v as usize]);
-            let front = (b - a).truncate().perp_dot((c - a).truncate()) > 0.0;
-            if front || !caster.closed {
-                map.draw([a, b, c]);
-            }
-        }
+        dispatch!(Level::new(), s => map.draw_all(s, caster));
         map
     }
 
-    /// Where a point falls: texels, 0.5 is the first centre.
-    fn place(&self, p: Vec3) -> Vec2 {
-        Vec2::new(p.dot(self.across), p.dot(self.along)) + self.origin
-    }
-
-    /// Draws a triangle whose x, y are texels (0.5 is the first centre), z its nearness.
-    #[inline]
-    fn draw(&mut self, [a, b, c]: [Vec3; 3]) {
-        // Texels count from 0, so that cutting off the fraction is rounding down.
-        let (low, high) = (a.min(b).min(c) + 0.5, a.max(b).max(c) + 0.5);
-        let (left, top) = (low.x as i32, low.y as i32);
-        let (right, bottom) = (high.x as i32, high.y as i32);
-        if left < right && top < bottom {
-            let right = (right as usize).min(self.width);
-            let bottom = (bottom as usize).min(self.height);
-            self.fill([a, b, c], left as usize..right, top as usize..bottom);
+    #[inline(always)]
+    fn draw_all<S: Simd>(&mut self, s: S, caster: &Caster) {
+        let points = self.places(s, &caster.points);
+        let toward = self.toward;
+        let mut boxes = [([0; 3], [0; 4]); AT_ONCE];
+        for group in caster.groups.iter().filter(|g| !g.looks_away(toward)) {
+            for faces in caster.faces[group.faces.clone()].chunks(AT_ONCE) {
+                // In two steps, and the first without a choice: they follow no rule.
+                let mut count = 0;
+                for face in faces {
+                    let [a, b, c] = *face;
+                    let corners = [&points[a as usize], &points[b as usize], &points[c as usize]];
+                    let (low, high, front) = span(s, corners);
+                    let some = (low[0] < high[0]) & (low[1] < high[1]);
+                    boxes[count] = (*face, [low[0], high[0], low[1], high[1]]);
+                    count += usize::from(some & (front | !caster.closed));
+                }
+                for (face, [left, right, top, bottom]) in &boxes[..count] {
+                    let right = (*right as usize).min(self.width);
+                    let bottom = (*bottom as usize).min(self.height);
+                    let corner = |v: u32| {
+                        let [x, y, z, _] = points[v as usize];
+                        Vec3::new(x, y, z)
+                    };
+                    let corners = [corner(face[0]), corner(face[1]), corner(face[2])];
+                    self.fill(s, corners, *left as usize..right, *top as usize..bottom);
+                }
+            }
         }
     }
 
-    fn fill(&mut self, [a, b, c]: [Vec3; 3], columns: Range<usize>, rows: Range<usize>) {
+    /// Where points fall, texels, and how near to the light.
+    #[inline(always)]
+    fn places<S: Simd>(&self, s: S, points: &[Vec3]) -> Vec<[f32; 4]> {
+        let (a, b, c) = (self.across, self.along, self.toward);
+        let x = f32x4::simd_from(s, [a.x, b.x, c.x, 0.0]);
+        let y = f32x4::simd_from(s, [a.y, b.y, c.y, 0.0]);
+        let z = f32x4::simd_from(s, [a.z, b.z, c.z, 0.0]);
+        let origin = f32x4::simd_from(s, [self.origin.x, self.origin.y, 0.0, 0.0]);
+        let mut places = vec![[0.0; 4]; points.len()];
+        for (p, place) in points.iter().zip(&mut places) {
+            let across = x * f32x4::splat(s, p.x) + y * f32x4::splat(s, p.y);
+            *place = (across + z * f32x4::splat(s, p.z) + origin).into();
+        }
+        places
+    }
+
+    #[inline(always)]
+    fn fill<S: Simd>(
+        &mut self,
+        s: S,
+        [a, b, c]: [Vec3; 3],
+        columns: Range<usize>,
+        rows: Range<usize>,
+    ) {
         let area = (b - a).truncate().perp_dot((c - a).truncate());
         if area == 0.0 {
             return;
@@ -182,94 +159,172 @@ impl DepthMap {
         };
         let (u, v) = (share(b, c), share(c, a));
         let depth = u * (a.z - c.z) + v * (b.z - c.z);
-        let right = Vec3::new(u.y, v.y, depth.y);
-        for (i, y) in rows.enumerate() {
-            let down = i as f32;
-            let mut at =
-                Vec3::new(u.x + u.z * down, v.x + v.z * down, c.z + depth.x + depth.z * down);
-            let row = y * self.width;
-            for texel in &mut self.depth[row + columns.start..row + columns.end] {
-                if at.x >= -SLACK && at.y >= -SLACK && at.x + at.y <= 1.0 + SLACK {
-                    *texel = texel.max(at.z);
-                }
-                at += right;
+        let depth = depth.with_x(c.z + depth.x);
+        let splat = |v: f32| f32x8::splat(s, v);
+        // Lanes are four rows of a column, then those of the next.
+        let row = f32x8::simd_from(s, [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]);
+        let column = f32x8::simd_from(s, [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]);
+        for i in (0..rows.len()).step_by(STRIP) {
+            let down = row + splat(i as f32);
+            let has_row = down.simd_lt(splat(rows.len() as f32));
+            let (mut us, mut vs) = (start(s, u, down), start(s, v, down));
+            let mut zs = start(s, depth, down);
+            for x in columns.clone().step_by(2) {
+                let has_column = column.simd_lt(splat((columns.end - x) as f32));
+                let within = us.simd_ge(splat(-SLACK))
+                    & vs.simd_ge(splat(-SLACK))
+                    & (us + vs).simd_le(splat(1.0 + SLACK));
+                let z = (within & has_row & has_column).select(zs, splat(f32::NEG_INFINITY));
+                let (left, right) = z.split();
+                let at = x * self.height + rows.start + i;
+                raise(s, left, &mut self.depth[at..at + STRIP]);
+                raise(s, right, &mut self.depth[at + self.height..at + self.height + STRIP]);
+                (us, vs, zs) = (next(us, u.y), next(vs, v.y), next(zs, depth.y));
             }
         }
     }
 
-    /// The share of a spot that the light reaches, smooth between texels, and the distance to
-    /// what stands nearest in its way.
-    #[inline]
-    pub fn open(&self, spot: &Spot) -> (f32, f32) {
-        let at = spot.at + (spot.normal + self.toward * 0.5) * self.lift;
-        let place = self.place(at) - 0.5;
-        let (x, y) = (place.x as i32 as usize, place.y as i32 as usize);
-        if !(place.min_element() >= 0.0 && x + 1 < self.width && y + 1 < self.height) {
-            return (1.0, f32::INFINITY);
+    /// The share of each spot that the light reaches, smooth between texels, and how much nearer to
+    /// the light the texels round it are: those that stand in its way are more than 0. Only where
+    /// `asked`; elsewhere, and off the map, all of it, and nothing.
+    #[inline(always)]
+    pub fn open<S: Simd>(&self, s: S, spots: &Spots<S>, asked: mask32x8<S>) -> Open<S> {
+        let splat = |v: f32| f32x8::splat(s, v);
+        let lift = spots.normal.plus(Vec8::splat(s, self.toward * 0.5)).times(splat(self.lift));
+        let at = spots.at.plus(lift);
+        let x = at.dot(Vec8::splat(s, self.across)) + splat(self.origin.x) - splat(0.5);
+        let y = at.dot(Vec8::splat(s, self.along)) + splat(self.origin.y) - splat(0.5);
+        let inside = asked
+            & x.simd_ge(splat(0.0))
+            & y.simd_ge(splat(0.0))
+            & x.simd_lt(splat((self.width - 1) as f32))
+            & y.simd_lt(splat((self.height - 1) as f32));
+        if !inside.any_true() {
+            return Open { share: splat(1.0), gaps: None };
         }
-        let part = place - Vec2::new(x as f32, y as f32);
-        let first = y * self.width + x;
-        let near = at.dot(self.toward);
-        let gap = |i: usize| self.depth[i] - near;
-        let gaps = [first, first + 1, first + self.width, first + self.width + 1].map(gap);
-        let free = gaps.map(|gap| if gap > 0.0 { 0.0 } else { 1.0 });
-        let far = |gap: f32| if gap > 0.0 { gap } else { f32::INFINITY };
-        let nearest = gaps.into_iter().fold(f32::INFINITY, |n, gap| n.min(far(gap)));
-        let upper = free[0] + (free[1] - free[0]) * part.x;
-        let lower = free[2] + (free[3] - free[2]) * part.x;
-        (upper + (lower - upper) * part.y, nearest)
+        let (left, top) =
+            (inside.select(x, splat(0.0)).trunc(), inside.select(y, splat(0.0)).trunc());
+        let first: [i32; LANES] =
+            (left * splat(self.height as f32) + top).to_int::<i32x8<S>>().into();
+        let near = at.dot(Vec8::splat(s, self.toward));
+        let mut texels = [[[0.0; 2]; LANES]; 2];
+        for lane in 0..LANES {
+            let first = first[lane] as usize;
+            let square = &self.depth[first..first + self.height + 2];
+            texels[0][lane] = [square[0], square[1]];
+            texels[1][lane] = [square[self.height], square[self.height + 1]];
+        }
+        let ((a, c), (b, d)) = (columns(s, &texels[0]), columns(s, &texels[1]));
+        let gaps = [a - near, b - near, c - near, d - near];
+        let (right, down) = (x - left, y - top);
+        let upper = between(free(gaps[0]), free(gaps[1]), right);
+        let lower = between(free(gaps[2]), free(gaps[3]), right);
+        let share = inside.select(between(upper, lower, down), splat(1.0));
+        Open { share, gaps: Some((inside, gaps)) }
+    }
+}
+
+/// The texels that a triangle may cover, in columns and rows, the first and the first beyond; and
+/// whether the light sees its front.
+#[inline(always)]
+fn span<S: Simd>(s: S, [a, b, c]: [&[f32; 4]; 3]) -> ([i32; 4], [i32; 4], bool) {
+    let front = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0;
+    let (a, b, c) = (f32x4::simd_from(s, *a), f32x4::simd_from(s, *b), f32x4::simd_from(s, *c));
+    (texel(s, a.min(b).min(c)), texel(s, a.max(b).max(c)), front)
+}
+
+/// The first texel whose centre is not before a place; no less than 0.
+#[inline(always)]
+fn texel<S: Simd>(s: S, place: f32x4<S>) -> [i32; 4] {
+    // Texels count from 0, so that cutting off the fraction is rounding down.
+    let place = (place + f32x4::splat(s, 0.5)).max(f32x4::splat(s, 0.0));
+    place.to_int::<i32x4<S>>().into()
+}
+
+/// What starts at x and rises by y a column and by z a row, in some rows of two columns.
+#[inline(always)]
+fn start<S: Simd>(s: S, v: Vec3, down: f32x8<S>) -> f32x8<S> {
+    let (left, _) = (f32x8::splat(s, v.x) + f32x8::splat(s, v.z) * down).split();
+    left.combine(left + f32x4::splat(s, v.y))
+}
+
+/// The same two columns on.
+#[inline(always)]
+fn next<S: Simd>(now: f32x8<S>, step: f32) -> f32x8<S> {
+    let (_, before) = now.split();
+    let step = f32x4::splat(before.token(), step);
+    let left = before + step;
+    left.combine(left + step)
+}
+
+/// Raises a strip of texels to what is nearer.
+#[inline(always)]
+fn raise<S: Simd>(s: S, near: f32x4<S>, strip: &mut [f32]) {
+    near.max(f32x4::from_slice(s, strip)).store_slice(strip);
+}
+
+/// The upper ones and the lower ones of pairs.
+#[inline(always)]
+fn columns<S: Simd>(s: S, pairs: &[[f32; 2]; LANES]) -> (f32x8<S>, f32x8<S>) {
+    let (a, b) = pairs.as_flattened().split_at(LANES);
+    let (a, b) = (f32x8::from_slice(s, a), f32x8::from_slice(s, b));
+    (a.unzip_low(b), a.unzip_high(b))
+}
+
+/// Whether a texel lets light through: 1, or 0.
+#[inline(always)]
+fn free<S: Simd>(gap: f32x8<S>) -> f32x8<S> {
+    let number = |v| f32x8::splat(gap.token(), v);
+    gap.simd_gt(number(0.0)).select(number(0.0), number(1.0))
+}
+
+#[inline(always)]
+fn between<S: Simd>(a: f32x8<S>, b: f32x8<S>, part: f32x8<S>) -> f32x8<S> {
+    a + (b - a) * part
+}
+
+/// What [`DepthMap::open`] tells.
+pub(super) struct Open<S: Simd> {
+    /// The share of the light that arrives.
+    pub share: f32x8<S>,
+    gaps: Option<(mask32x8<S>, [f32x8<S>; 4])>,
+}
+
+impl<S: Simd> Open<S> {
+    /// The distance to what stands nearest in the light's way, or a smaller one.
+    #[inline(always)]
+    pub fn nearest(&self, other: f32x8<S>) -> f32x8<S> {
+        let Some((inside, gaps)) = self.gaps else {
+            return other;
+        };
+        let mut least = other;
+        for gap in gaps {
+            let in_way = inside & gap.simd_gt(f32x8::splat(gap.token(), 0.0));
+            least = in_way.select(least.min(gap), least);
+        }
+        least
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::caster::{Group, tests::hook};
+    use super::super::scene::Scene;
     use super::*;
-    use crate::mesh::TriMesh;
-
-    /// An L of unequal bricks: not convex, so that faces lie behind faces.
-    fn hook() -> TriMesh {
-        let profile = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
-        let at = |z: f64| profile.map(|[x, y]| glam::dvec3(x, y, z));
-        let points = [at(0.0), at(2.0)].concat();
-        let mut faces = vec![];
-        for [a, b, c] in [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]] {
-            faces.extend([[a, c, b], [a + 6, b + 6, c + 6]]);
-        }
-        for a in 0..6 {
-            let b = (a + 1) % 6;
-            faces.extend([[a, b, b + 6], [a, b + 6, a + 6]]);
-        }
-        TriMesh { points, faces }
-    }
 
     #[test]
     fn of_a_closed_mesh_the_fronts_alone_are_as_near_as_all() {
         let scene = Scene::new(&hook(), None).unwrap();
         let caster = Caster::of(&scene, 400.0);
         assert!(caster.closed);
-        let all = Caster { closed: false, ..Caster::of(&scene, 400.0) };
+        let mut all = Caster::of(&scene, 400.0);
+        all.closed = false;
+        all.groups = vec![Group::any(0..all.faces.len())];
         for toward in [Vec3::Z, Vec3::new(0.6, 0.7, 0.4), Vec3::new(-0.3, -0.8, -0.5)] {
             let maps = [&caster, &all].map(|c| DepthMap::new(c, toward.normalize()).depth);
             let far = maps[0].iter().zip(&maps[1]).filter(|(a, b)| *a < *b && *b - *a > 1e-4);
             // on outlines a face seen edge on may reach half a texel farther
             assert!(far.count() * 200 < maps[0].len(), "{toward}");
         }
-    }
-
-    #[test]
-    fn open_and_inverted_meshes_are_not_closed() {
-        let is_closed = |mesh: &TriMesh| {
-            let points: Vec<Vec3> = mesh.points.iter().map(|p| p.as_vec3()).collect();
-            closed(&points, &mesh.faces)
-        };
-        let mut mesh = hook();
-        assert!(is_closed(&mesh));
-        let inverted = TriMesh {
-            faces: mesh.faces.iter().map(|&[a, b, c]| [a, c, b]).collect(),
-            ..mesh.clone()
-        };
-        assert!(!is_closed(&inverted));
-        mesh.faces.pop();
-        assert!(!is_closed(&mesh));
     }
 }

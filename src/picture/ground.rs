@@ -60,14 +60,18 @@ impl Ground {
     /// The light at a place of the floor, fading to 1 at the edge of the square.
     pub fn light(&self, at: Vec2) -> f32 {
         let place = (at - self.low) * self.scale - 0.5;
-        let last = (self.side - 2) as f32;
-        let corner = place.floor().clamp(Vec2::ZERO, Vec2::splat(last));
-        let part = (place - corner).clamp(Vec2::ZERO, Vec2::ONE);
-        let first = corner.y as usize * self.side + corner.x as usize;
-        let mix = |i: usize| self.light[i] + (self.light[i + 1] - self.light[i]) * part.x;
-        let light = mix(first) + (mix(first + self.side) - mix(first)) * part.y;
         let from_middle = (place / (self.side as f32 * 0.5) - 1.0).length();
         let fade = ((1.0 - from_middle) / 0.6).clamp(0.0, 1.0);
+        if fade == 0.0 {
+            return 1.0;
+        }
+        let last = (self.side - 2) as f32;
+        let corner = place.clamp(Vec2::ZERO, Vec2::splat(last)).to_array().map(|n| n as usize);
+        let part = place - Vec2::from(corner.map(|n| n as f32));
+        let part = part.clamp(Vec2::ZERO, Vec2::ONE);
+        let first = corner[1] * self.side + corner[0];
+        let mix = |i: usize| self.light[i] + (self.light[i + 1] - self.light[i]) * part.x;
+        let light = mix(first) + (mix(first + self.side) - mix(first)) * part.y;
         1.0 - (1.0 - light) * fade * fade * (3.0 - 2.0 * fade)
     }
 }

@@ -1,8 +1,11 @@
 //! The studio: light from many directions, each with a depth map of what it reaches first.
 
 use super::camera::Camera;
-use super::depth_map::{Caster, DepthMap, Spot, texels};
+use super::caster::{Caster, texels};
+use super::depth_map::{DepthMap, Packet, Spot};
+use super::lanes::{Eight, Eight3, LANES, Vec8, take};
 use super::scene::Scene;
+use fearless_simd::{Level, Simd, dispatch, f32x8, mask32x8, prelude::*};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::f32::consts::PI;
@@ -56,36 +59,65 @@ impl Lights {
 
     /// The light that reaches each spot; 1 is what an open floor receives.
     pub fn reach(&self, spots: &[Spot]) -> Vec<Vec3> {
-        let mut sums = vec![Vec3::ZERO; spots.len()];
+        let packets: Vec<Packet> = spots.chunks(LANES).map(Packet::of).collect();
+        let sums = dispatch!(Level::new(), s => self.sum(s, &packets));
+        let at = |i: usize| take(&sums[i / LANES], i % LANES) / self.open;
+        (0..spots.len()).map(at).collect()
+    }
+
+    #[inline(always)]
+    fn sum<S: Simd>(&self, s: S, packets: &[Packet]) -> Vec<Eight3> {
+        let mut sums = vec![[[0.0; LANES]; 3]; packets.len()];
+        let zero = f32x8::splat(s, 0.0);
         // Light by light: one depth map at a time stays in the cache.
         for light in &self.lights {
-            for (spot, sum) in spots.iter().zip(&mut sums) {
-                let slant = spot.normal.dot(light.map.toward);
-                if slant > 0.0 {
-                    let (open, _) = light.map.open(spot);
-                    *sum += light.color * (slant * open);
+            for (packet, sum) in packets.iter().zip(&mut sums) {
+                let spots = packet.load(s);
+                let slant = spots.normal.dot(Vec8::splat(s, light.map.toward));
+                let lit = slant.simd_gt(zero);
+                if lit.any_true() {
+                    let part = lit.select(slant * light.map.open(s, &spots, lit).share, zero);
+                    let more = Vec8::splat(s, light.color).times(part);
+                    *sum = Vec8::load(s, sum).plus(more).store();
                 }
             }
         }
-        sums.iter_mut().for_each(|sum| *sum /= self.open);
         sums
     }
 
     /// For spots of the floor the light that reaches them, and how far off the nearest thing is
     /// that keeps some of it away; 0 when nothing does.
     pub fn on_floor(&self, spots: &[Spot]) -> Vec<[f32; 2]> {
-        let mut sums = vec![[0.0, f32::INFINITY]; spots.len()];
         let weigh = |l: &Light| l.color.element_sum() * l.map.toward.z.max(0.0);
+        let all: f32 = self.lights.iter().map(weigh).sum();
+        let packets: Vec<Packet> = spots.chunks(LANES).map(Packet::of).collect();
+        let sums = dispatch!(Level::new(), s => self.sum_on_floor(s, &packets, weigh));
+        let finite = |d: f32| if d.is_finite() { d } else { 0.0 };
+        let at = |i: usize| {
+            let [sum, nearest] = sums[i / LANES].map(|lanes| lanes[i % LANES]);
+            [sum / all, finite(nearest)]
+        };
+        (0..spots.len()).map(at).collect()
+    }
+
+    #[inline(always)]
+    fn sum_on_floor<S: Simd>(
+        &self,
+        s: S,
+        packets: &[Packet],
+        weigh: impl Fn(&Light) -> f32,
+    ) -> Vec<[Eight; 2]> {
+        let mut sums = vec![[[0.0; LANES], [f32::INFINITY; LANES]]; packets.len()];
+        let all = mask32x8::splat(s, true);
         for light in self.lights.iter().filter(|l| l.map.toward.z > 0.0) {
-            for (spot, [sum, nearest]) in spots.iter().zip(&mut sums) {
-                let (open, distance) = light.map.open(spot);
-                *sum += weigh(light) * open;
-                *nearest = nearest.min(distance);
+            let weight = f32x8::splat(s, weigh(light));
+            for (packet, [sum, nearest]) in packets.iter().zip(&mut sums) {
+                let open = light.map.open(s, &packet.load(s), all);
+                *sum = (f32x8::simd_from(s, *sum) + weight * open.share).into();
+                *nearest = open.nearest(f32x8::simd_from(s, *nearest)).into();
             }
         }
-        let all: f32 = self.lights.iter().map(weigh).sum();
-        let finite = |d: f32| if d.is_finite() { d } else { 0.0 };
-        sums.into_iter().map(|[sum, nearest]| [sum / all, finite(nearest)]).collect()
+        sums
     }
 }
 

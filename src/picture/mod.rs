@@ -21,14 +21,18 @@
 //! # Ok::<(), picture::PictureError>(())
 //! ```
 
+mod alike;
 mod animation;
 mod camera;
+mod caster;
 mod depth_map;
 mod font;
 mod ground;
 mod image;
+mod lanes;
 mod light;
 mod normals;
+mod patch;
 mod raster;
 mod scene;
 mod shade;

@@ -1,5 +1,6 @@
 //! Normals that round off what is meant to be round and leave edges crisp.
 
+use super::alike::firsts;
 use glam::{Vec3, Vec4, Vec4Swizzles as _};
 use rayon::prelude::*;
 
@@ -24,7 +25,8 @@ pub(super) struct Normals {
 
 impl Normals {
     pub fn new(points: &[Vec3], faces: &[[u32; 3]]) -> Self {
-        let first = joined(points);
+        let bits = |v: u32| (points[v as usize] + 0.0).to_array().map(f32::to_bits);
+        let first = firsts(points.len(), bits);
         let corners: Vec<[u32; 3]> =
             faces.par_iter().map(|f| f.map(|v| first[v as usize])).collect();
         let mut start = vec![0_u32; points.len() + 1];
@@ -75,17 +77,4 @@ impl Normals {
             sum.normalize_or(own)
         })
     }
-}
-
-/// For each point the first one at the same place.
-fn joined(points: &[Vec3]) -> Vec<u32> {
-    let bits = |v: u32| (points[v as usize] + 0.0).to_array().map(f32::to_bits);
-    let mut order: Vec<([u32; 3], u32)> =
-        (0..points.len() as u32).into_par_iter().map(|v| (bits(v), v)).collect();
-    order.par_sort_unstable();
-    let mut first = vec![0; points.len()];
-    for group in order.chunk_by(|a, b| a.0 == b.0) {
-        group.iter().for_each(|&(_, v)| first[v as usize] = group[0].1);
-    }
-    first
 }

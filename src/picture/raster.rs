@@ -2,7 +2,6 @@
 
 use super::camera::{Camera, Seen};
 use super::scene::Scene;
-use glam::Vec2;
 use rayon::prelude::*;
 
 /// Steps a sample is divided into. Corners are moved to whole steps, so that all arithmetic on
@@ -11,6 +10,10 @@ const STEPS: f32 = 256.0;
 /// Faces that reach further than this (steps) from the picture's corner are left out: products
 /// of two such lengths must fit an i64.
 const FARTHEST: f32 = (1 << 28) as f32;
+/// Samples along each side of a pixel.
+pub(super) const SAMPLES: usize = 3;
+/// The same as a number.
+pub(super) const SIDE: f32 = SAMPLES as f32;
 /// No face.
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -47,16 +50,10 @@ pub(super) struct Band {
 }
 
 impl<'a> Raster<'a> {
-    /// For a picture of that many rows of samples, in bands of `rows`; `samples` a pixel side.
-    pub fn new(
-        scene: &'a Scene,
-        camera: &Camera,
-        samples: f32,
-        height: usize,
-        rows: usize,
-    ) -> Self {
+    /// For a picture of that many rows of samples, in bands of `rows`.
+    pub fn new(scene: &'a Scene, camera: &Camera, height: usize, rows: usize) -> Self {
         let corner = |seen: Seen| {
-            let at = (seen.at * samples * STEPS).round();
+            let at = (seen.at * SIDE * STEPS).round();
             (at.abs().max_element() < FARTHEST).then_some(Corner {
                 x: at.x as i32,
                 y: at.y as i32,
@@ -102,19 +99,20 @@ impl<'a> Raster<'a> {
         band
     }
 
-    /// Shares of the three corners of a face at a sample.
-    pub fn shares(&self, face: u32, x: usize, y: usize) -> [f32; 3] {
-        let Some(c) = self.corners(face as usize) else {
-            return [1.0, 0.0, 0.0];
-        };
-        let (w, _) = Edges::of(c).at(x, y);
-        let sum = (w[0] + w[1] + w[2]).max(1) as f32;
-        w.map(|w| w as f32 / sum)
+    /// What tells the shares of the three corners of a face.
+    pub fn plane(&self, face: u32) -> Plane {
+        self.corners(face as usize).map_or_else(Plane::default, |c| Edges::of(c).plane())
     }
 }
 
 impl Band {
     fn draw(&mut self, face: u32, c: [Corner; 3], rows: usize, behind: f32) {
+        let (left, right) = covered(c.map(|c| c.x), self.width);
+        let (low, high) = covered(c.map(|c| c.y), self.top + rows);
+        let low = low.max(self.top);
+        if left >= right || low >= high {
+            return;
+        }
         let edges = Edges::of(c);
         if edges.turn == 0 {
             return;
@@ -122,10 +120,8 @@ impl Band {
         // Rows run down, so a face seen from outside turns the negative way.
         let back = if edges.turn > 0 { behind } else { 0.0 };
         let area = edges.turn.abs() as f32;
-        let (left, right) = covered(c.map(|c| c.x), self.width);
-        let (low, high) = covered(c.map(|c| c.y), self.top + rows);
         let near = c.map(|c| (c.near - back) / area);
-        for y in low.max(self.top)..high {
+        for y in low..high {
             let (mut w, step) = edges.at(left, y);
             let row = (y - self.top) * self.width;
             for at in row + left..row + right {
@@ -178,14 +174,43 @@ impl Edges {
         let step = [b[1] - c[1], c[1] - a[1], a[1] - b[1]].map(|dy| dy * one * sign);
         (w, step)
     }
+
+    fn plane(&self) -> Plane {
+        let [a, b, c] = self.corner;
+        let (first, right) = self.at(0, 0);
+        let down = STEPS as i64 * self.turn.signum();
+        let down = [c[0] - b[0], a[0] - c[0], b[0] - a[0]].map(|dx| dx * down);
+        Plane { edges: [first, right, down], sum: self.turn.abs().max(1) as f32 }
+    }
+}
+
+/// How the corners of a face share its samples.
+#[derive(Clone, Copy)]
+pub(super) struct Plane {
+    /// Edge functions at the first sample, and their steps to the right and down.
+    edges: [[i64; 3]; 3],
+    /// Their sum.
+    sum: f32,
+}
+
+impl Default for Plane {
+    fn default() -> Self {
+        Self { edges: [[1, 0, 0], [0; 3], [0; 3]], sum: 1.0 }
+    }
+}
+
+impl Plane {
+    /// Shares of the three corners at a sample.
+    #[inline]
+    pub fn shares(&self, x: usize, y: usize) -> [f32; 3] {
+        let [first, right, down] = &self.edges;
+        let (x, y) = (x as i64, y as i64);
+        let share = |k: usize| (first[k] + right[k] * x + down[k] * y) as f32 / self.sum;
+        [share(0), share(1), share(2)]
+    }
 }
 
 /// Twice the signed area of a triangle.
 fn across(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-/// Centre of a sample, in pixels.
-pub(super) fn centre(x: usize, y: usize, samples: f32) -> Vec2 {
-    (Vec2::new(x as f32, y as f32) + 0.5) / samples
 }

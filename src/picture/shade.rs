@@ -1,25 +1,20 @@
 //! From samples to pixels: colour, light, the shadow on the ground.
 
-use super::camera::{Camera, Seen};
+use super::camera::Camera;
 use super::depth_map::Spot;
 use super::ground::Ground;
 use super::light::Lights;
-use super::raster::{Band, NONE, Raster, centre};
+use super::patch::{Gatherer, Patch};
+use super::raster::{Band, Raster, SAMPLES, SIDE};
 use super::scene::Scene;
 use super::{Image, Style};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Samples along each side of a pixel.
-const SAMPLES: usize = 3;
-/// The same as a number.
-const SIDE: f32 = SAMPLES as f32;
 /// Samples of a pixel in all.
 const ALL: f32 = SIDE * SIDE;
 /// Rows of pixels drawn in one go.
 const ROWS: usize = 16;
-/// Samples of one pixel whose normals differ less than this (cosine) are lit together.
-const ALIKE: f32 = 0.95;
 /// How far the colour of a face seen from behind goes over to [`WARM`].
 const TINT: f32 = 0.55;
 /// Linear colour that faces seen from behind tend to.
@@ -33,32 +28,6 @@ const EXPOSURE: f32 = 1.02;
 /// How dark a shadow on the ground may get: 1 is black.
 const SHADOW: f32 = 0.75;
 
-/// The samples of one pixel that lie on one piece of surface.
-#[derive(Clone, Copy)]
-struct Patch {
-    pixel: usize,
-    count: f32,
-    /// Sum of their places.
-    at: Vec3,
-    /// Normal of the first.
-    first: Vec3,
-    /// Sum of their normals.
-    normal: Vec3,
-    behind: bool,
-}
-
-impl Patch {
-    fn add(&mut self, at: Vec3, normal: Vec3) {
-        self.at += at;
-        self.normal += normal;
-        self.count += 1.0;
-    }
-
-    fn spot(&self) -> Spot {
-        Spot { at: self.at / self.count, normal: self.normal.normalize_or(self.first) }
-    }
-}
-
 pub(super) fn draw(
     image: &mut Image,
     scene: &Scene,
@@ -69,10 +38,12 @@ pub(super) fn draw(
     let (width, height) = (image.width() as usize, image.height() as usize);
     let samples = (width * SAMPLES, height * SAMPLES);
     let (raster, ground) = rayon::join(
-        || Raster::new(scene, camera, SAMPLES as f32, samples.1, ROWS * SAMPLES),
+        || Raster::new(scene, camera, samples.1, ROWS * SAMPLES),
         || Ground::new(scene, lights, width.max(height)),
     );
-    let painter = Painter { scene, camera, lights, ground, raster, style };
+    let (background, own) = (linear(style.background), linear(style.color));
+    let colors = [own, own.lerp(WARM, TINT)];
+    let painter = Painter { scene, camera, lights, ground, raster, background, colors };
     let bands = image.pixels_mut().par_chunks_mut(width * ROWS).enumerate();
     bands.for_each(|(index, pixels)| {
         let band = painter.raster.band(index, samples.0, samples.1);
@@ -86,92 +57,48 @@ struct Painter<'a> {
     lights: &'a Lights,
     ground: Ground,
     raster: Raster<'a>,
-    style: &'a Style,
+    /// Linear colour behind the mesh, and of its faces seen from their fronts and backs.
+    background: Vec3,
+    colors: [Vec3; 2],
 }
 
 impl Painter<'_> {
     fn paint(&self, band: &Band, pixels: &mut [[u8; 3]], top: usize) {
         let width = band.width / SAMPLES;
-        let background = linear(self.style.background);
-        let mut patches = Vec::new();
+        let mut gatherer = Gatherer::new(self.scene, self.camera, &self.raster, band);
         let mut sums = vec![Vec3::ZERO; pixels.len()];
         for (pixel, sum) in sums.iter_mut().enumerate() {
             let (x, y) = (pixel % width, pixel / width);
-            let bare = self.gather(band, x, y, pixel, &mut patches);
+            let bare = gatherer.pixel(x, y, pixel) as f32;
             if bare > 0.0 {
-                *sum = background * (self.floor(x, top + y) * bare / ALL);
+                *sum = self.background * (self.floor(x, top + y) * bare / ALL);
             }
         }
+        let patches = gatherer.finish();
         let spots: Vec<Spot> = patches.iter().map(Patch::spot).collect();
         let lights = self.lights.reach(&spots);
         for ((patch, spot), light) in patches.iter().zip(&spots).zip(lights) {
             sums[patch.pixel] += self.color(patch.behind, spot, light) * (patch.count / ALL);
         }
+        // Much of a picture is of one colour.
+        let mut last = (Vec3::ZERO, encode(Vec3::ZERO));
         for (pixel, sum) in pixels.iter_mut().zip(sums) {
-            *pixel = encode(sum);
+            if sum != last.0 {
+                last = (sum, encode(sum));
+            }
+            *pixel = last.1;
         }
-    }
-
-    /// Collects what the samples of a pixel see; the number of samples that see nothing.
-    fn gather(
-        &self,
-        band: &Band,
-        x: usize,
-        y: usize,
-        pixel: usize,
-        patches: &mut Vec<Patch>,
-    ) -> f32 {
-        let first = patches.len();
-        let mut misses = 0.0;
-        // Neighbouring samples mostly see one face: its normals are kept.
-        let mut last = (NONE, [Vec3::ZERO; 3]);
-        for k in 0..SAMPLES * SAMPLES {
-            let (sx, sy) = (x * SAMPLES + k % SAMPLES, y * SAMPLES + k / SAMPLES);
-            let (face, near) = (band.face[sy * band.width + sx], band.near[sy * band.width + sx]);
-            if face == NONE {
-                misses += 1.0;
-                continue;
-            }
-            if face != last.0 {
-                last = (face, self.scene.normals.smooth(face as usize));
-            }
-            let shares = self.raster.shares(face, sx, band.top + sy);
-            let at = self.camera.unsee(Seen { at: centre(sx, band.top + sy, SIDE), near });
-            let (normal, behind) = self.facing(face, at, last.1, shares);
-            let alike = |p: &&mut Patch| p.behind == behind && p.first.dot(normal) > ALIKE;
-            match patches[first..].iter_mut().find(alike) {
-                Some(patch) => patch.add(at, normal),
-                None => {
-                    let (first, count) = (normal, 1.0);
-                    patches.push(Patch { pixel, count, at, first, normal, behind });
-                }
-            }
-        }
-        misses
-    }
-
-    /// The normal on the side of a face that is seen, and whether that is its back.
-    fn facing(&self, face: u32, at: Vec3, corners: [Vec3; 3], shares: [f32; 3]) -> (Vec3, bool) {
-        let (flat, sight) = (self.scene.normals.flat(face as usize), self.camera.sight(at));
-        let behind = flat.dot(sight) < 0.0;
-        let [a, b, c] = corners;
-        let smooth = (a * shares[0] + b * shares[1] + c * shares[2]).normalize_or(flat);
-        let normal = if behind { -smooth } else { smooth };
-        // Bent back where it looks away: what is seen faces the eye.
-        let away = normal.dot(sight).min(0.0);
-        ((normal - sight * away).normalize_or(sight), behind)
     }
 
     fn color(&self, behind: bool, spot: &Spot, light: Vec3) -> Vec3 {
-        let own = linear(self.style.color);
-        let base = if behind { own.lerp(WARM, TINT) } else { own };
+        let base = self.colors[usize::from(behind)];
         let straight = spot.normal.dot(self.camera.sight(spot.at)).clamp(0.0, 1.0);
         (light + AMBIENT) * EXPOSURE * (base + SHEEN * (1.0 - straight).powi(4))
     }
 
     /// The light on the floor under a pixel; 1 where the floor cannot be seen.
     fn floor(&self, x: usize, y: usize) -> f32 {
-        let (origin, direction) = self.camera.ray(centre(x, y, 1.0));
+        let (origin, direction) = self.camera.ray(Vec2::new(x as f32, y as f32) + 0.5);
         if direction.z > -1e-3 {
             return 1.0;
         }

@@ -49,6 +49,13 @@ impl Winding {
         (Self { bvh: bvh.clone(), dipoles }, bvh)
     }
 
+    /// Lets go of what only distances need, where nobody else has the tree.
+    pub fn forget_distances(&mut self) {
+        if let Some(bvh) = Arc::get_mut(&mut self.bvh) {
+            (bvh.tris, bvh.wide) = Default::default();
+        }
+    }
+
     /// Whether there are no triangles, so that the winding number is 0 everywhere.
     pub fn is_empty(&self) -> bool {
         self.bvh.is_empty()

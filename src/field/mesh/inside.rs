@@ -48,6 +48,12 @@ impl Inside {
         Self { closed, open, rim: Rim::new(rim), bounds }
     }
 
+    /// Lets go of what only distances need, where nobody else has the trees.
+    pub(super) fn forget_distances(&mut self) {
+        self.closed.forget_distances();
+        self.open.forget_distances();
+    }
+
     /// The box round all faces; everything outside it is outside.
     pub(super) fn bounds(&self) -> &Aabb {
         &self.bounds

@@ -17,6 +17,7 @@ mod orient;
 mod report;
 mod seams;
 mod shells;
+mod signs;
 mod solid;
 mod soup;
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::range::Ranges;
 use super::{CELLS, LEAF, Leaf, SIDE, Sampled};
 use crate::field::Field;
 use crate::job::{self, Cancelled, Job};
-use crate::num::Aabb;
+use crate::num::{Aabb, Interval};
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -252,8 +252,11 @@ impl Grid {
         let mut done = Vec::new();
         for level in (0..=top).rev() {
             job::check(job)?;
-            let split: Vec<bool> =
-                open.par_iter().map(|l| level > 0 && self.must_split(field, l)).collect();
+            let split = |some: &[Leaf]| match level {
+                0 => vec![false; some.len()],
+                _ => self.must_split(field, some),
+            };
+            let split: Vec<bool> = open.par_chunks(8).flat_map_iter(split).collect();
             let mut next = Vec::new();
             for (leaf, split) in open.into_iter().zip(split) {
                 if !split {
@@ -271,12 +274,18 @@ impl Grid {
         Ok(done)
     }
 
-    fn must_split(&self, field: &dyn Field, leaf: &Leaf) -> bool {
-        let side = CELLS << leaf.level;
-        let b = Aabb::new(self.point(leaf.corner), self.point(leaf.corner + side));
-        let f = field.bound(&b);
-        let keep = STAND_OFF * self.step * f64::from(side);
-        f.lo < keep && f.hi > -keep
+    /// Which leaves, neighbours mostly, are too near to the surface.
+    fn must_split(&self, field: &dyn Field, leaves: &[Leaf]) -> Vec<bool> {
+        let region =
+            |l: &Leaf| Aabb::new(self.point(l.corner), self.point(l.corner + (CELLS << l.level)));
+        let boxes: Vec<Aabb> = leaves.iter().map(region).collect();
+        let mut bounds = vec![Interval::ALL; boxes.len()];
+        field.bounds(&boxes, &mut bounds);
+        let near = |(l, f): (&Leaf, Interval)| {
+            let keep = STAND_OFF * self.step * f64::from(CELLS << l.level);
+            f.lo < keep && f.hi > -keep
+        };
+        leaves.iter().zip(bounds).map(near).collect()
     }
 
     /// The 8³ near samples of every leaf; its far faces stay zero.

@@ -59,8 +59,8 @@ pub fn write(path: &Path, mesh: &TriMesh, note: &str, force: bool) -> Result<u64
     Ok(size)
 }
 
-/// Faces of an STL that are held in memory as they will be written.
-const AT_ONCE: usize = 1 << 18;
+/// Faces of an STL that are made as they will be written, while as many before them are written.
+const AT_ONCE: usize = 1 << 17;
 
 /// Part by part, so that the file need not be in memory as a whole; each is compared with the mesh
 /// before it is written.
@@ -203,15 +203,19 @@ fn differs<T: PartialEq + Display>(what: &str, back: T, mesh: T) -> Result<(), S
 }
 
 /// Writes beside the place and renames into it, so that no half file is ever there.
-fn place<B: AsRef<[u8]>>(
+fn place<B: AsRef<[u8]> + Send + Sync>(
     path: &Path,
-    parts: impl Iterator<Item = Result<B, MeshError>>,
+    mut parts: impl Iterator<Item = Result<B, MeshError>> + Send,
     force: bool,
 ) -> Result<(), MeshError> {
     let failed = |cause| MeshError::Io { path: path.into(), doing: "write", cause };
     let mut file = beside(path).map_err(failed)?;
-    for part in parts {
-        file.write_all(part?.as_ref()).map_err(failed)?;
+    let mut part = parts.next().transpose()?;
+    while let Some(ready) = part {
+        // the next one is made while the system takes this one
+        let (written, next) = rayon::join(|| file.write_all(ready.as_ref()), || parts.next());
+        written.map_err(failed)?;
+        part = next.transpose()?;
     }
     let kept = if force { file.persist(path) } else { file.persist_noclobber(path) };
     match kept {
