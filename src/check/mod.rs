@@ -121,6 +121,8 @@ pub struct Swept {
     pub health: Health,
     /// Its pieces.
     pub pieces: Pieces,
+    /// What [`parts`] tells of it.
+    pub parts: (Vec<u32>, Vec<Part>),
 }
 
 /// [`drop_crumbs`] where the share is above zero, then [`inspect`] and [`solid_pieces`], in less time
@@ -138,8 +140,9 @@ pub fn sweep(mut mesh: TriMesh, smallest_share: f64, options: &Options) -> Swept
     }
     let pieces = parts::count(&found.anatomy.parts);
     let health = health(&mesh, &found, options);
-    drop(found);
-    Swept { mesh, crumbs, health, pieces }
+    let Found { anatomy: Anatomy { topology, parts }, .. } = found;
+    let parts = (topology.labels, parts);
+    Swept { mesh, crumbs, health, pieces, parts }
 }
 
 /// What the state of a mesh is told from.

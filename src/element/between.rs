@@ -1,6 +1,8 @@
 use super::Element;
 use crate::num::Aabb;
+use crate::num::lanes::{LANES, Vec8};
 use crate::warp::{Ball, Barr};
+use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// The map from one element onto another through their normal coordinates:
@@ -54,6 +56,22 @@ impl Between {
         }
     }
 
+    /// [`Between::pull`] of eight points, to the bit.
+    #[inline(always)]
+    pub(crate) fn pulled<S: Simd>(&self, s: S, p: Vec8<S>) -> Vec8<S> {
+        match &self.road {
+            Road::Same => p,
+            Road::Affine { map, .. } => p.mapped(map),
+            Road::Deformed(_) => {
+                let mut at = [DVec3::ZERO; LANES];
+                for (at, p) in at.iter_mut().zip(p.lanes()) {
+                    *at = self.pull(p);
+                }
+                Vec8::of(s, &at)
+            }
+        }
+    }
+
     /// No less than the 2-norm of the Jacobian of `pull` anywhere in the box; infinite where the
     /// box reaches the far side of a bend axis and `pull` jumps.
     pub fn stretch(&self, b: &Aabb) -> f64 {
@@ -95,8 +113,14 @@ impl Between {
     }
 }
 
-impl Road {
+impl Between {
     /// The whole map, where it is affine.
+    pub(crate) fn affine(&self) -> Option<DAffine3> {
+        self.road.affine()
+    }
+}
+
+impl Road {
     fn affine(&self) -> Option<DAffine3> {
         match self {
             Self::Same => Some(DAffine3::IDENTITY),

@@ -1,6 +1,8 @@
 //! Invariants of elements and of the maps between them.
 
 use super::*;
+use crate::num::lanes::{Boxes, Lane};
+use fearless_simd::{Level, dispatch};
 use glam::DVec2;
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -98,6 +100,25 @@ proptest! {
         let b = Aabb::around(e.centre + c, h.abs());
         prop_assert!(e.distance_bound(&b).contains(e.distance(b.centre() + u * h)));
         prop_assert!(e.distance_bound(&b).contains(e.distance(b.centre())));
+    }
+
+    /// What a point or box gives alone and among eight.
+    #[test]
+    fn eight_at_once_are_eight_alone(e in element(), o in element(), round in 0usize..2,
+                                     c in prop::collection::vec((vector(400.0), vector(60.0)), 1..9)) {
+        let (gauge, map) = (e.gauge(round as f64 * 3.0), e.between(&o));
+        let boxes: Vec<Aabb> = c.iter().map(|&(c, h)| Aabb::around(c, h.abs())).collect();
+        let (d, y, range) = dispatch!(Level::new(), s => {
+            let all = Boxes::of(s, &boxes);
+            let d: Lane = gauge.distances(s, all.centre).into();
+            (d, map.pulled(s, all.centre).lanes(), gauge.ranges(s, &all).lanes())
+        });
+        for (i, b) in boxes.iter().enumerate() {
+            prop_assert_eq!(d[i].to_bits(), gauge.distance(b.centre()).to_bits());
+            prop_assert_eq!(y[i], map.pull(b.centre()));
+            let alone = gauge.bound(b);
+            prop_assert!((range[i].lo - alone.lo).abs() < 1e-9 && (range[i].hi - alone.hi).abs() < 1e-9);
+        }
     }
 
     #[test]

@@ -1,13 +1,14 @@
 //! The field of a hybrid at one time: positions through the features, values of the shapes there,
 //! and the morphing function of those.
 
-use super::convex::combine;
-use super::inner::{Local, LocalRange, Mix};
+use super::inner::{Local, Local8, Mix};
 use super::plan::Blend;
 use crate::element::{Between, Element, Gauge};
 use crate::field::{Field, Shared};
+use crate::num::lanes::{LANES, Lane, Vec8};
 use crate::num::{Aabb, Interval};
 use crate::weight::Weighting;
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 /// A feature at one time.
@@ -49,156 +50,261 @@ pub(super) struct Looked {
     pub g: Vec<f64>,
     /// Weights of the k shapes at each point.
     pub lam: Vec<f64>,
-    /// Feature weights at each point, n a row: those of positions, and the sharp ones.
-    w: Vec<f64>,
+    /// Sharp weights of the n features at each point.
     pub sharp: Vec<f64>,
-    /// Distances to the features, n a row.
-    d: Vec<f64>,
 }
 
-impl Hybrid {
-    fn counts(&self) -> (usize, usize) {
-        (self.shapes.len(), self.features.len())
+/// Some numbers at many points, by octets of points: the `n` of octet b start at `b * n`.
+struct Octets {
+    n: usize,
+    all: Vec<Lane>,
+}
+
+impl Octets {
+    fn new(n: usize, points: usize) -> Self {
+        Self { n, all: Vec::with_capacity(n * points.div_ceil(LANES)) }
     }
 
-    /// Distances and weights of the features at every point.
-    fn weigh(&self, at: &[DVec3], sharp: bool, out: &mut Looked) {
-        let n = self.features.len();
-        out.d.resize(at.len() * n, 0.0);
-        out.w.resize(at.len() * n, 0.0);
-        out.sharp.resize(at.len() * n, 0.0);
-        for (r, &p) in at.iter().enumerate() {
-            let row = r * n..(r + 1) * n;
-            for (d, f) in out.d[row.clone()].iter_mut().zip(&self.features) {
-                *d = f.gauge.distance(p);
-            }
-            self.weighting.weigh(&out.d[row.clone()], &mut out.w[row.clone()]);
-            if sharp {
-                self.sharp.weigh(&out.d[row.clone()], &mut out.sharp[row]);
-            }
+    fn zeros(n: usize, points: usize) -> Self {
+        Self { n, all: vec![[0.0; LANES]; n * points.div_ceil(LANES)] }
+    }
+
+    #[inline(always)]
+    fn put<S: Simd>(&mut self, numbers: &[f64x8<S>]) {
+        for &x in numbers {
+            self.all.push(x.into());
         }
     }
 
+    #[inline(always)]
+    fn get<S: Simd>(&self, s: S, b: usize, i: usize) -> f64x8<S> {
+        f64x8::simd_from(s, self.all[b * self.n + i])
+    }
+
+    /// Number `i` at a point.
+    fn at(&self, point: usize, i: usize) -> f64 {
+        self.all[point / LANES * self.n + i][point % LANES]
+    }
+
+    fn set(&mut self, point: usize, i: usize, x: f64) {
+        self.all[point / LANES * self.n + i][point % LANES] = x;
+    }
+
+    /// The numbers of a point after those of another.
+    fn rows(&self, points: usize) -> Vec<f64> {
+        (0..points).flat_map(|r| (0..self.n).map(move |i| self.at(r, i))).collect()
+    }
+}
+
+/// The n features at many points.
+struct Weights {
+    /// Distances.
+    d: Octets,
+    /// Weights of positions, and the sharp ones.
+    w: Octets,
+    sharp: Octets,
+}
+
+impl Hybrid {
+    /// Distances and weights of the features at every point.
+    #[inline(always)]
+    fn weigh<S: Simd>(&self, s: S, at: &[DVec3], sharp: bool) -> Weights {
+        let n = self.features.len();
+        let octets = || Octets::new(n, at.len());
+        let mut out = Weights { d: octets(), w: octets(), sharp: octets() };
+        if n == 0 {
+            return out;
+        }
+        let zero = f64x8::splat(s, 0.0);
+        let (mut d, mut w) = (vec![zero; n], vec![zero; n]);
+        for at in at.chunks(LANES) {
+            let p = Vec8::of(s, at);
+            for (d, f) in d.iter_mut().zip(&self.features) {
+                *d = f.gauge.distances(s, p);
+            }
+            out.d.put(&d);
+            self.weighting.weigh_all(s, &d, &mut w);
+            out.w.put(&w);
+            if sharp {
+                self.sharp.weigh_all(s, &d, &mut w);
+                out.sharp.put(&w);
+            }
+        }
+        out
+    }
+
     /// Whether the morphing function reads shapes that weigh nothing.
-    fn reads_all(&self) -> bool {
+    pub(super) fn reads_all(&self) -> bool {
         matches!(self.mix, Mix::SpaceTime(_))
+    }
+
+    /// The shapes that the morphing function reads somewhere.
+    pub(super) fn read(&self) -> Vec<usize> {
+        let weighs = |j: usize| match &self.features[..] {
+            [] => self.lam[j] != 0.0,
+            all => all.iter().any(|f| f.lam[j] != 0.0),
+        };
+        (0..self.shapes.len()).filter(|&j| self.reads_all() || weighs(j)).collect()
     }
 
     /// Values and weights of the shapes under the blended maps: y_j = Σ w_i T_ij(x), g_j = f_j(y_j).
     pub fn look_up(&self, at: &[DVec3], out: &mut Looked) {
-        self.weigh(at, true, out);
-        out.lam = self.shares(at.len(), &out.sharp);
-        self.values_of(at, out, |_, _| true);
+        let all: Vec<usize> = (0..self.shapes.len()).collect();
+        dispatch!(Level::new(), s => {
+            let weights = self.weigh(s, at, true);
+            out.lam = self.shares(s, at.len(), &weights.sharp, &all).rows(at.len());
+            out.g = self.values_of(s, at, &weights.w, &all, |_, _| true).rows(at.len());
+            out.sharp = weights.sharp.rows(at.len());
+        });
     }
 
     /// Values alone of the shapes that are wanted; those of the others are zero.
     pub fn look_up_some(&self, at: &[DVec3], wanted: impl Fn(usize) -> bool) -> Vec<f64> {
-        let mut out = Looked::default();
-        self.weigh(at, false, &mut out);
-        self.values_of(at, &mut out, |j, _| wanted(j));
-        out.g
+        let all: Vec<usize> = (0..self.shapes.len()).collect();
+        dispatch!(Level::new(), s => {
+            let weights = self.weigh(s, at, false);
+            self.values_of(s, at, &weights.w, &all, |j, _| wanted(j)).rows(at.len())
+        })
     }
 
-    /// Weights of the k shapes at some points from the sharp weights of the features there.
-    fn shares(&self, points: usize, sharp: &[f64]) -> Vec<f64> {
-        let (k, n) = self.counts();
-        if n == 0 {
-            return self.lam.repeat(points);
-        }
-        let mut lam = Vec::with_capacity(points * k);
-        for w in sharp.chunks_exact(n) {
-            let share = |j| w.iter().zip(&self.features).map(|(w, f)| w * f.lam[j]).sum::<f64>();
-            lam.extend((0..k).map(share));
+    /// Weights of some shapes at some points from the sharp weights of the features there.
+    #[inline(always)]
+    fn shares<S: Simd>(&self, s: S, points: usize, sharp: &Octets, shapes: &[usize]) -> Octets {
+        let mut lam = Octets::new(shapes.len(), points);
+        for b in 0..points.div_ceil(LANES) {
+            for &j in shapes {
+                if self.features.is_empty() {
+                    lam.all.push([self.lam[j]; LANES]);
+                    continue;
+                }
+                let mut share = f64x8::splat(s, 0.0);
+                for (i, f) in self.features.iter().enumerate() {
+                    share += sharp.get(s, b, i) * f.lam[j];
+                }
+                lam.all.push(share.into());
+            }
         }
         lam
     }
 
-    /// Values of the shapes that are wanted (by shape and row) under the blended maps.
-    fn values_of(&self, at: &[DVec3], out: &mut Looked, wanted: impl Fn(usize, usize) -> bool) {
-        let (k, n) = self.counts();
-        let Looked { g, w, .. } = out;
-        g.clear();
-        g.resize(at.len() * k, 0.0);
-        for (j, shape) in self.shapes.iter().enumerate() {
-            let rows: Vec<usize> = (0..at.len()).filter(|&r| wanted(j, r)).collect();
-            let place = |r: usize| match n {
-                0 => at[r],
-                _ => self.blended(j, at[r], &w[r * n..(r + 1) * n]),
-            };
-            values_at(shape, &rows, place, |r, v| g[r * k + j] = v);
+    /// Values of some shapes under the blended maps where they are wanted (by place in `shapes`, and
+    /// point), zero elsewhere.
+    #[inline(always)]
+    fn values_of<S: Simd>(
+        &self,
+        s: S,
+        at: &[DVec3],
+        w: &Octets,
+        shapes: &[usize],
+        wanted: impl Fn(usize, usize) -> bool,
+    ) -> Octets {
+        let mut g = Octets::zeros(shapes.len(), at.len());
+        let (mut rows, mut places) = (Vec::with_capacity(at.len()), Vec::with_capacity(at.len()));
+        let mut values = Vec::new();
+        for (c, &j) in shapes.iter().enumerate() {
+            rows.clear();
+            places.clear();
+            for (b, at) in at.chunks(LANES).enumerate() {
+                let first = rows.len();
+                let all = b * LANES..b * LANES + at.len();
+                rows.extend(all.filter(|&r| wanted(c, r)));
+                if rows.len() > first {
+                    let y = self.blended(s, j, Vec8::of(s, at), w, b).lanes();
+                    places.extend(rows[first..].iter().map(|r| y[r % LANES]));
+                }
+            }
+            values.clear();
+            values.resize(places.len(), 0.0);
+            self.shapes[j].values(&places, &mut values);
+            rows.iter().zip(&values).for_each(|(&r, &v)| g.set(r, c, v));
         }
+        g
     }
 
-    fn blended(&self, j: usize, p: DVec3, w: &[f64]) -> DVec3 {
-        let mut y = DVec3::ZERO;
-        for (w, f) in w.iter().zip(&self.features) {
+    #[inline(always)]
+    fn blended<S: Simd>(&self, s: S, j: usize, p: Vec8<S>, w: &Octets, b: usize) -> Vec8<S> {
+        if self.features.is_empty() {
+            return p;
+        }
+        let mut y = Vec8::splat(s, DVec3::ZERO);
+        for (i, f) in self.features.iter().enumerate() {
+            let w = w.get(s, b, i);
+            let some = w.simd_gt(f64x8::splat(s, 0.0));
             // exact zeros (eq. 5) would only cost time
-            if *w > 0.0 {
-                y += *w * f.maps[j].pull(p);
+            if some.any_true() {
+                let more = y.plus(f.maps[j].pulled(s, p).times(w));
+                y = more.or(y, some);
             }
         }
         y
     }
 
-    /// The morphing parameters at a row of sharp weights.
-    fn local(&self, w: &[f64]) -> Local {
+    /// The morphing parameters at an octet.
+    #[inline(always)]
+    fn local<S: Simd>(&self, s: S, sharp: &Octets, b: usize) -> Local8<S> {
         if self.features.is_empty() {
-            return self.local;
+            return Local8::splat(s, &self.local);
         }
-        let sum = |get: fn(&Local) -> f64| -> f64 {
-            w.iter().zip(&self.features).map(|(w, f)| w * get(&f.local)).sum()
-        };
-        Local {
-            reach: sum(|l| l.reach),
-            depth: sum(|l| l.depth),
-            apart: sum(|l| l.apart),
-            level: sum(|l| l.level),
+        let mut sum = Local8::splat(s, &Local::NONE);
+        for (i, f) in self.features.iter().enumerate() {
+            sum.add(sharp.get(s, b, i), &f.local);
         }
+        sum
     }
 
-    /// Thins the shapes' values at a row of sharp weights.
-    fn thin(&self, g: &mut [f64], w: &[f64]) {
-        if self.features.is_empty() {
-            g.iter_mut().zip(&self.thin).for_each(|(g, t)| *g += t);
-        }
-        for (w, f) in w.iter().zip(&self.features) {
-            g.iter_mut().zip(&f.thin).for_each(|(g, t)| *g += w * t);
-        }
+    /// By how much shape `j` is thinned, a number a feature or one for the whole.
+    pub(super) fn thin(&self, j: usize) -> impl Iterator<Item = f64> + '_ {
+        let own = move |t: &[f64]| t.get(j).copied().unwrap_or(0.0);
+        let whole = self.features.is_empty().then(|| own(&self.thin));
+        self.features.iter().map(move |f| own(&f.thin)).chain(whole)
     }
 
-    fn values_by_maps(&self, at: &[DVec3], out: &mut [f64]) {
-        let (k, n) = self.counts();
-        let mut l = Looked::default();
-        self.weigh(at, true, &mut l);
-        let lam = self.shares(at.len(), &l.sharp);
+    #[inline(always)]
+    fn values_by_maps<S: Simd>(&self, s: S, at: &[DVec3], out: &mut [f64]) {
+        let read = self.read();
+        let Weights { d, w, sharp } = self.weigh(s, at, true);
+        let lam = self.shares(s, at.len(), &sharp, &read);
         let all = self.reads_all();
-        self.values_of(at, &mut l, |j, r| all || lam[r * k + j] != 0.0);
-        for (r, f) in out.iter_mut().enumerate() {
-            let row = r * k..(r + 1) * k;
-            let feature = r * n..(r + 1) * n;
-            let (w, d) = if n > 0 {
-                (&l.sharp[feature.clone()], &l.d[feature.clone()])
-            } else {
-                (&[][..], &[][..])
-            };
-            self.thin(&mut l.g[row.clone()], w);
-            *f = self.mix.value(&l.g[row.clone()], &lam[row], &self.local(w));
-            for (i, p) in self.features.iter().enumerate() {
-                *f -= l.w[r * n + i] * offset(p.offset, d[i]);
+        let g = self.values_of(s, at, &w, &read, |c, r| all || lam.at(r, c) != 0.0);
+        let thins: Vec<bool> = read.iter().map(|&j| self.thin(j).any(|t| t != 0.0)).collect();
+        let zero = f64x8::splat(s, 0.0);
+        let (mut here, mut shares) = (vec![zero; read.len()], vec![zero; read.len()]);
+        for (b, out) in out.chunks_mut(LANES).enumerate() {
+            for (c, &j) in read.iter().enumerate() {
+                (here[c], shares[c]) = (g.get(s, b, c), lam.get(s, b, c));
+                if thins[c] {
+                    here[c] = self.thinned(s, here[c], j, &sharp, b);
+                }
             }
+            let mut f = self.mix.values(s, &here, &shares, &self.local(s, &sharp, b));
+            for (i, feature) in self.features.iter().enumerate() {
+                if feature.offset != 0.0 {
+                    f -= w.get(s, b, i) * offsets(feature.offset, d.get(s, b, i));
+                }
+            }
+            let f: Lane = f.into();
+            out.copy_from_slice(&f[..out.len()]);
         }
+    }
+
+    #[inline(always)]
+    fn thinned<S: Simd>(&self, s: S, g: f64x8<S>, j: usize, sharp: &Octets, b: usize) -> f64x8<S> {
+        let mut g = g;
+        for (i, t) in self.thin(j).enumerate() {
+            g += if self.features.is_empty() { f64x8::splat(s, t) } else { sharp.get(s, b, i) * t };
+        }
+        g
     }
 
     /// Eqs 1 and 8: Σ w_i (f_m(f_j(T_ij x)) - o_i), the offset's sign being the house's.
     fn values_by_fields(&self, at: &[DVec3], out: &mut [f64]) {
-        let (k, n) = self.counts();
-        let mut l = Looked::default();
-        self.weigh(at, false, &mut l);
+        let k = self.shapes.len();
+        let Weights { d, w, .. } = dispatch!(Level::new(), s => self.weigh(s, at, false));
         out.fill(0.0);
         let all = self.reads_all();
         let mut g = vec![0.0; at.len() * k];
         for (i, feature) in self.features.iter().enumerate() {
-            let rows: Vec<usize> = (0..at.len()).filter(|&r| l.w[r * n + i] > 0.0).collect();
+            let rows: Vec<usize> = (0..at.len()).filter(|&r| w.at(r, i) > 0.0).collect();
             for (j, shape) in self.shapes.iter().enumerate() {
                 if all || feature.lam[j] != 0.0 {
                     let thin = feature.thin.get(j).copied().unwrap_or(0.0);
@@ -207,103 +313,13 @@ impl Hybrid {
                 }
             }
             for (r, f) in out.iter_mut().enumerate() {
-                let w = l.w[r * n + i];
+                let w = w.at(r, i);
                 if w > 0.0 {
                     let v = self.mix.value(&g[r * k..(r + 1) * k], &feature.lam, &feature.local);
-                    *f += w * (v - offset(feature.offset, l.d[r * n + i]));
+                    *f += w * (v - offset(feature.offset, d.at(r, i)));
                 }
             }
         }
-    }
-
-    fn bound_by_maps(&self, b: &Aabb) -> Interval {
-        let (k, n) = self.counts();
-        let mut order = Vec::new();
-        if n == 0 {
-            let thin = |j: usize| self.thin.get(j).copied().unwrap_or(0.0);
-            let g: Vec<_> =
-                self.shapes.iter().enumerate().map(|(j, f)| f.bound(b).shift(thin(j))).collect();
-            let lam: Vec<_> = self.lam.iter().map(|&l| Interval::point(l)).collect();
-            return self.mix.bound(&g, &lam, &self.local.into(), &mut order);
-        }
-        let d: Vec<_> = self.features.iter().map(|f| f.gauge.bound(b)).collect();
-        let (mut w, mut sharp) = (vec![Interval::ALL; n], vec![Interval::ALL; n]);
-        self.weighting.enclose(&d, &mut w);
-        self.sharp.enclose(&d, &mut sharp);
-        let convex = |x: &dyn Fn(&Placed) -> f64, order: &mut Vec<usize>| {
-            let x: Vec<_> = self.features.iter().map(|f| Interval::point(x(f))).collect();
-            combine(&sharp, &x, order)
-        };
-        let mut g = Vec::with_capacity(k);
-        let mut lam = Vec::with_capacity(k);
-        for j in 0..k {
-            let thin = convex(&|f| f.thin.get(j).copied().unwrap_or(0.0), &mut order);
-            let share = convex(&|f| f.lam[j], &mut order).clamp(0.0, 1.0);
-            g.push(if share.hi > 0.0 || self.reads_all() {
-                self.shapes[j].bound(&self.image(j, b, &w, &mut order)) + thin
-            } else {
-                Interval::ALL
-            });
-            lam.push(share);
-        }
-        let local = LocalRange {
-            reach: convex(&|f| f.local.reach, &mut order),
-            depth: convex(&|f| f.local.depth, &mut order),
-            apart: convex(&|f| f.local.apart, &mut order),
-            level: convex(&|f| f.local.level, &mut order),
-        };
-        let offsets: Vec<_> =
-            self.features.iter().zip(&d).map(|(f, &d)| offset_range(f.offset, d)).collect();
-        self.mix.bound(&g, &lam, &local, &mut order) - combine(&w, &offsets, &mut order)
-    }
-
-    /// A box that holds y_j(x) for every x in `b`: the image under the map of the feature that
-    /// weighs most, plus what the others may pull away from it.
-    fn image(&self, j: usize, b: &Aabb, w: &[Interval], order: &mut Vec<usize>) -> Aabb {
-        let main = (0..w.len()).max_by(|&a, &c| w[a].hi.total_cmp(&w[c].hi)).unwrap_or(0);
-        let own = self.features[main].maps[j].image(b);
-        let none = Aabb::new(DVec3::ZERO, DVec3::ZERO);
-        let away: Vec<Aabb> = (0..w.len())
-            .map(|i| match &self.features[i] {
-                f if i != main && w[i].hi > 0.0 => {
-                    f.maps[j].difference(&self.features[main].maps[j], b)
-                }
-                _ => none,
-            })
-            .collect();
-        let axis = |c: usize, order: &mut Vec<usize>| {
-            let x: Vec<_> = away.iter().map(|a| Interval::new(a.min[c], a.max[c])).collect();
-            combine(w, &x, order)
-        };
-        let shift = [axis(0, order), axis(1, order), axis(2, order)];
-        Aabb::new(
-            own.min + DVec3::new(shift[0].lo, shift[1].lo, shift[2].lo),
-            own.max + DVec3::new(shift[0].hi, shift[1].hi, shift[2].hi),
-        )
-    }
-
-    fn bound_by_fields(&self, b: &Aabb) -> Interval {
-        let mut order = Vec::new();
-        let d: Vec<_> = self.features.iter().map(|f| f.gauge.bound(b)).collect();
-        let mut w = vec![Interval::ALL; d.len()];
-        self.weighting.enclose(&d, &mut w);
-        let values: Vec<_> = self
-            .features
-            .iter()
-            .enumerate()
-            .map(|(i, f)| {
-                if w[i].hi <= 0.0 {
-                    return Interval::point(0.0);
-                }
-                let thin = |j: usize| f.thin.get(j).copied().unwrap_or(0.0);
-                let bound = |(j, s): (usize, &Shared)| s.bound(&f.maps[j].image(b)).shift(thin(j));
-                let g: Vec<_> = self.shapes.iter().enumerate().map(bound).collect();
-                let lam: Vec<_> = f.lam.iter().map(|&l| Interval::point(l)).collect();
-                let v = self.mix.bound(&g, &lam, &f.local.into(), &mut order);
-                v - offset_range(f.offset, d[i])
-            })
-            .collect();
-        combine(&w, &values, &mut order)
     }
 }
 
@@ -322,24 +338,16 @@ fn values_at(
 
 /// Offset o_i of eq. 6 as METHODS corrects it: d inside the feature, fading to nothing at the
 /// distance |d| outside.
-fn offset(d: f64, distance: f64) -> f64 {
+pub(super) fn offset(d: f64, distance: f64) -> f64 {
     (d.abs() - distance).clamp(0.0, d.abs()).copysign(d)
 }
 
-fn offset_range(d: f64, distance: Interval) -> Interval {
-    let (a, b) = (offset(d, distance.lo), offset(d, distance.hi));
-    Interval::new(a.min(b), a.max(b))
-}
-
-impl From<Local> for LocalRange {
-    fn from(l: Local) -> Self {
-        Self {
-            reach: Interval::point(l.reach),
-            depth: Interval::point(l.depth),
-            apart: Interval::point(l.apart),
-            level: Interval::point(l.level),
-        }
-    }
+/// [`offset`] at eight distances.
+#[inline(always)]
+pub(super) fn offsets<S: Simd>(d: f64, distance: f64x8<S>) -> f64x8<S> {
+    let (s, most) = (distance.token(), f64x8::splat(distance.token(), d.abs()));
+    let size = (most - distance).max(f64x8::splat(s, 0.0)).min(most);
+    if d < 0.0 { -size } else { size }
 }
 
 impl Field for Hybrid {
@@ -352,16 +360,28 @@ impl Field for Hybrid {
     fn values(&self, at: &[DVec3], out: &mut [f64]) {
         match self.blend {
             Blend::Fields if !self.features.is_empty() => self.values_by_fields(at, out),
-            _ => self.values_by_maps(at, out),
+            _ => dispatch!(Level::new(), s => self.values_by_maps(s, at, out)),
         }
     }
 
     fn bound(&self, b: &Aabb) -> Interval {
-        let f = match self.blend {
-            Blend::Fields if !self.features.is_empty() => self.bound_by_fields(b),
-            _ => self.bound_by_maps(b),
-        };
-        f.widen(1e-9 * (1.0 + b.radius()))
+        let mut bound = [Interval::ALL];
+        self.bounds(&[*b], &mut bound);
+        bound[0]
+    }
+
+    fn bounds(&self, boxes: &[Aabb], out: &mut [Interval]) {
+        match self.blend {
+            Blend::Fields if !self.features.is_empty() => {
+                for (bound, b) in out.iter_mut().zip(boxes) {
+                    *bound = self.bound_by_fields(b);
+                }
+            }
+            _ => self.bounds_by_maps(boxes, out),
+        }
+        for (bound, b) in out.iter_mut().zip(boxes) {
+            *bound = bound.widen(1e-9 * (1.0 + b.radius()));
+        }
     }
 
     /// The maps may bring matter from anywhere, so nothing smaller can be promised.

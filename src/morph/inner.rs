@@ -4,6 +4,8 @@
 use super::convex::combine;
 use super::space_time::Bounded;
 use crate::num::Interval;
+use crate::num::lanes::LANES;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// A morphing function with its parameters chosen.
 #[derive(Clone, Debug)]
@@ -28,6 +30,47 @@ pub(super) struct Local {
     pub level: f64,
 }
 
+impl Local {
+    /// Nothing yet.
+    pub const NONE: Self = Self { reach: 0.0, depth: 0.0, apart: 0.0, level: 0.0 };
+}
+
+/// Eight [`Local`]s.
+pub(super) struct Local8<S: Simd> {
+    reach: f64x8<S>,
+    depth: f64x8<S>,
+    apart: f64x8<S>,
+    level: f64x8<S>,
+}
+
+impl<S: Simd> Local8<S> {
+    /// The same in all lanes.
+    #[inline(always)]
+    pub fn splat(s: S, l: &Local) -> Self {
+        Self {
+            reach: f64x8::splat(s, l.reach),
+            depth: f64x8::splat(s, l.depth),
+            apart: f64x8::splat(s, l.apart),
+            level: f64x8::splat(s, l.level),
+        }
+    }
+
+    /// Adds one by its weights.
+    #[inline(always)]
+    pub fn add(&mut self, w: f64x8<S>, l: &Local) {
+        self.reach += w * l.reach;
+        self.depth += w * l.depth;
+        self.apart += w * l.apart;
+        self.level += w * l.level;
+    }
+
+    #[inline(always)]
+    fn lane(&self, i: usize) -> Local {
+        let Self { reach, depth, apart, level } = self;
+        Local { reach: reach[i], depth: depth[i], apart: apart[i], level: level[i] }
+    }
+}
+
 /// A range of [`Local`]s.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalRange {
@@ -48,6 +91,35 @@ impl Mix {
             Self::Auto => {
                 let (l, u) = (linear(g, lam) - at.level, grow(g, lam, at.reach));
                 l + (u - l) * at.apart
+            }
+        }
+    }
+
+    /// [`Mix::value`] of eight points, to the bit.
+    #[inline(always)]
+    pub fn values<S: Simd>(
+        &self,
+        s: S,
+        g: &[f64x8<S>],
+        lam: &[f64x8<S>],
+        at: &Local8<S>,
+    ) -> f64x8<S> {
+        match self {
+            Self::Linear => linears(s, g, lam),
+            Self::Grow => grown(s, g, lam, at.reach),
+            Self::Auto => {
+                let l = linears(s, g, lam) - at.level;
+                let u = grown(s, g, lam, at.reach);
+                l + (u - l) * at.apart
+            }
+            Self::SpaceTime(_) | Self::Erode => {
+                let mut out = [0.0; LANES];
+                for (lane, out) in out.iter_mut().enumerate() {
+                    let g: Vec<f64> = g.iter().map(|g| g[lane]).collect();
+                    let lam: Vec<f64> = lam.iter().map(|l| l[lane]).collect();
+                    *out = self.value(&g, &lam, &at.lane(lane));
+                }
+                f64x8::simd_from(s, out)
             }
         }
     }
@@ -109,6 +181,46 @@ pub(super) fn grow(g: &[f64], lam: &[f64], reach: f64) -> f64 {
             let near = least_shifted(g, lam, reach, Some(j));
             least = least.min(v.max(near - reach * l / top));
         }
+    }
+    least
+}
+
+/// [`linear`] of eight points.
+#[inline(always)]
+fn linears<S: Simd>(s: S, g: &[f64x8<S>], lam: &[f64x8<S>]) -> f64x8<S> {
+    let zero = f64x8::splat(s, 0.0);
+    let mut sum = zero;
+    for (&g, &l) in g.iter().zip(lam) {
+        sum += l.simd_gt(zero).select(g * l, zero);
+    }
+    sum
+}
+
+/// [`grow`] of eight points.
+#[inline(always)]
+fn grown<S: Simd>(s: S, g: &[f64x8<S>], lam: &[f64x8<S>], reach: f64x8<S>) -> f64x8<S> {
+    let (zero, one) = (f64x8::splat(s, 0.0), f64x8::splat(s, 1.0));
+    let none = f64x8::splat(s, f64::INFINITY);
+    let mut top = zero;
+    for &l in lam {
+        top = top.max(l);
+    }
+    let mut least = none;
+    for (j, (&v, &l)) in g.iter().zip(lam).enumerate() {
+        let (whole, some) = (l.simd_ge(top), l.simd_gt(zero));
+        let mut own = v;
+        if !whole.all_true() {
+            let mut near = none;
+            for (i, (&g, &l)) in g.iter().zip(lam).enumerate() {
+                if i != j {
+                    let shifted = g + reach * (one - l / top);
+                    near = l.simd_gt(zero).select(near.min(shifted), near);
+                }
+            }
+            let lesser = v.max(near - reach * l / top);
+            own = whole.select(v, some.select(lesser, none));
+        }
+        least = least.min(own);
     }
     least
 }
@@ -182,6 +294,7 @@ fn grow_bound(g: &[Interval], lam: &[Interval], reach: Interval) -> Interval {
 mod tests {
     use super::*;
     use crate::morph::plan::Form;
+    use fearless_simd::{Level, dispatch};
     use proptest::prelude::*;
 
     fn mixes() -> Vec<Mix> {
@@ -226,6 +339,31 @@ mod tests {
                 let v = mix.value(&gv, &lam, &at);
                 let b = mix.bound(&gi, &lam_range, &range, &mut Vec::new());
                 prop_assert!(b.widen(1e-9).contains(v), "{mix:?}: {v} not in {b:?}");
+            }
+        }
+
+        /// What a point gives alone and among eight.
+        #[test]
+        fn eight_at_once_are_eight_alone(
+            g in prop::array::uniform3(prop::array::uniform8(-5.0..5.0f64)),
+            raw in prop::array::uniform3(prop::array::uniform8((0.0..1.0f64, prop::bool::weighted(0.3)))),
+            reach in 0.5..6.0f64,
+        ) {
+            let raw = raw.map(|r| r.map(|(x, zero)| if zero { 0.0 } else { x }));
+            let sum: [f64; LANES] = std::array::from_fn(|i| raw.iter().map(|r| r[i]).sum());
+            prop_assume!(sum.iter().all(|&s| s > 1e-3));
+            let lam: [[f64; LANES]; 3] =
+                raw.map(|r| std::array::from_fn(|i| r[i] / sum[i]));
+            let at = Local { reach, depth: reach, apart: 0.3, level: 0.4 };
+            for mix in mixes() {
+                let all: [f64; LANES] = dispatch!(Level::new(), s => {
+                    let (g, lam) = (g.map(|g| f64x8::simd_from(s, g)), lam.map(|l| f64x8::simd_from(s, l)));
+                    mix.values(s, &g, &lam, &Local8::splat(s, &at)).into()
+                });
+                for i in 0..LANES {
+                    let alone = mix.value(&g.map(|g| g[i]), &lam.map(|l| l[i]), &at);
+                    prop_assert_eq!(all[i], alone, "{:?}", mix);
+                }
             }
         }
 

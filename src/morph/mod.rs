@@ -6,6 +6,7 @@
 //! default. `level-set`, `transport` and `warp` go other ways, for comparison. [`build`] checks the plan; [`Morph::at`] fixes the time and measures what is automatic.
 
 mod convex;
+mod enclose;
 mod hybrid;
 mod inner;
 mod level_set;

@@ -249,11 +249,18 @@ fn batches_give_what_points_give() {
     let mut next = random(3);
     for (name, plan) in morphs() {
         let f = build(plan).unwrap().at(0.6, &Quiet).unwrap();
-        let at: Vec<_> = (0..64).map(|_| DVec3::new(next(), next(), next()) * 50.0).collect();
+        let at: Vec<_> = (0..61).map(|_| DVec3::new(next(), next(), next()) * 50.0).collect();
         let mut out = vec![0.0; at.len()];
         f.values(&at, &mut out);
         for (&p, &v) in at.iter().zip(&out) {
             assert_eq!(v, f.value(p), "{name} at {p}");
+        }
+        let half = |next: &mut dyn FnMut() -> f64| DVec3::new(next(), next(), next()).abs() * 9.0;
+        let boxes: Vec<_> = at[..21].iter().map(|&p| Aabb::around(p, half(&mut next))).collect();
+        let mut bounds = vec![Interval::ALL; boxes.len()];
+        f.bounds(&boxes, &mut bounds);
+        for (b, bound) in boxes.iter().zip(&bounds) {
+            assert_eq!(*bound, f.bound(b), "{name} over {b:?}");
         }
     }
 }

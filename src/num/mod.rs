@@ -5,6 +5,7 @@ mod aabb;
 mod band;
 pub mod expr;
 mod interval;
+pub(crate) mod lanes;
 pub mod lsq;
 #[cfg(test)]
 pub(crate) mod mutate;

@@ -1,6 +1,7 @@
 //! Whether the feet of a hybrid's shapes stand on the floor in its mesh.
 
-use crate::mesh::{TriMesh, shells};
+use crate::check::Part;
+use crate::mesh::TriMesh;
 use crate::morph::Foot;
 use crate::num::Aabb;
 use glam::DVec3;
@@ -21,13 +22,18 @@ const FLOOR: f64 = 0.02;
 const CELLS: f64 = 2.0;
 
 impl Feet {
-    /// Counts the feet of a mesh whose cells were `cell` mm wide.
-    pub fn of(mesh: &TriMesh, wanted: &[Foot], cell: f64) -> Self {
-        let main = largest(mesh);
-        let bounds = Aabb::of(main.iter().copied());
+    /// Counts the feet of a mesh of these [`parts`](crate::check::parts), whose cells were `cell` mm
+    /// wide.
+    pub fn of(mesh: &TriMesh, parts: &(Vec<u32>, Vec<Part>), wanted: &[Foot], cell: f64) -> Self {
+        let (labels, parts) = parts;
+        let volume = |i: usize| parts.get(i).map_or(0.0, |p| p.volume_mm3);
+        let main = (0..parts.len()).max_by(|&a, &b| volume(a).total_cmp(&volume(b))).unwrap_or(0);
+        let bounds = parts.get(main).map_or(Aabb::EMPTY, |p| p.bounds);
         let slack = FLOOR * bounds.size().z;
         let low = bounds.min.z + slack.max(cell);
-        let floor: Vec<DVec3> = main.into_iter().filter(|p| p.z <= low).collect();
+        let own = mesh.faces.iter().zip(labels).filter(|(_, part)| **part as usize == main);
+        let corners = own.flat_map(|(f, _)| f.iter().filter_map(|&v| mesh.points.get(v as usize)));
+        let floor: Vec<DVec3> = corners.copied().filter(|p| p.z <= low).collect();
         let stands = |f: &&Foot| {
             let reach = f.reach + slack + CELLS * cell;
             floor.iter().any(|p| p.truncate().distance(f.at.truncate()) <= reach)
@@ -41,23 +47,10 @@ impl Feet {
     }
 }
 
-/// The corners of the piece with the largest volume.
-fn largest(mesh: &TriMesh) -> Vec<DVec3> {
-    let (of_face, count) = shells(mesh);
-    let corners = |f: &[u32; 3]| f.map(|v| mesh.points[v as usize]);
-    let mut volumes = vec![0.0; count];
-    for (f, &piece) in mesh.faces.iter().zip(&of_face) {
-        let [a, b, c] = corners(f);
-        volumes[piece as usize] += a.dot(b.cross(c));
-    }
-    let main = (0..count).max_by(|&a, &b| volumes[a].total_cmp(&volumes[b])).unwrap_or(0);
-    let own = mesh.faces.iter().zip(&of_face).filter(|(_, p)| **p as usize == main);
-    own.flat_map(|(f, _)| corners(f)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::check::parts;
     use crate::element::{Element, tessellate};
 
     #[test]
@@ -69,9 +62,11 @@ mod tests {
         let mut mesh = rod(0.0, 0.0, 500.0, 30.0);
         mesh.append(&rod(200.0, 0.0, 400.0, 10.0));
         let foot = |x: f64| Foot { at: DVec3::new(x, 0.0, 0.0), reach: 12.0 };
-        let feet = Feet::of(&mesh, &[foot(0.0), foot(25.0), foot(200.0), foot(90.0)], 4.0);
+        let feet =
+            Feet::of(&mesh, &parts(&mesh), &[foot(0.0), foot(25.0), foot(200.0), foot(90.0)], 4.0);
         assert_eq!(feet, Feet { wanted: 4, standing: 2 });
         assert_eq!(feet.story(), "2 of 4 feet on the floor");
-        assert_eq!(Feet::of(&TriMesh::default(), &[foot(0.0)], 1.0).standing, 0);
+        let (none, parts) = (TriMesh::default(), Default::default());
+        assert_eq!(Feet::of(&none, &parts, &[foot(0.0)], 1.0).standing, 0);
     }
 }

@@ -1,7 +1,7 @@
 //! One field to one mesh: sample, extract, drop crumbs, inspect.
 
 use super::report::FrameReport;
-use crate::check::{self, Options};
+use crate::check::{self, Options, Part};
 use crate::field::Shared;
 use crate::field::sample::{sample, undecided, undecided_at_most};
 use crate::grid::Lattice;
@@ -33,6 +33,8 @@ pub struct Work<'a> {
 pub struct FrameResult {
     /// The mesh; `None` when the report has an error.
     pub mesh: Option<TriMesh>,
+    /// What [`check::parts`] tells of the mesh.
+    pub parts: (Vec<u32>, Vec<Part>),
     /// What is known about it.
     pub report: FrameReport,
 }
@@ -47,7 +49,7 @@ impl FrameResult {
             voxel_mm: work.lattice.step,
             ..FrameReport::default()
         };
-        Self { mesh: None, report }
+        Self { mesh: None, parts: Default::default(), report }
     }
 }
 
@@ -102,7 +104,7 @@ pub fn make(
         let why = "nothing is inside: the result is empty at this time; try another method, inner \
                    function or finer cells";
         r.error = Some(why.to_owned());
-        return Ok(FrameResult { mesh: None, report: r });
+        return Ok(FrameResult { mesh: None, parts: Default::default(), report: r });
     }
     job.stage("check");
     let options = Options { self_intersections: work.verify };
@@ -111,5 +113,5 @@ pub fn make(
     r.crumbs = swept.crumbs;
     r.pieces = Some(swept.pieces.solids as u64);
     r.health = Some(swept.health);
-    Ok(FrameResult { mesh: Some(swept.mesh), report: r })
+    Ok(FrameResult { mesh: Some(swept.mesh), parts: swept.parts, report: r })
 }

@@ -146,7 +146,7 @@ pub fn run(
             frame.mean_volume(variant.mean_volume(t));
             let feet = variant.feet(t);
             if let Some(mesh) = made.mesh.as_ref().filter(|_| !feet.is_empty()) {
-                frame.feet = Some(Feet::of(mesh, &feet, frame.voxel_mm));
+                frame.feet = Some(Feet::of(mesh, &made.parts, &feet, frame.voxel_mm));
             }
             let image = match &made.mesh {
                 Some(mesh) => put(&mut frame, mesh, settings, job)?,

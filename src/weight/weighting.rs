@@ -1,4 +1,6 @@
 use crate::num::Interval;
+use crate::num::lanes::{Interval8, LANES};
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// Covers the round-off of the few operations behind a weight.
 const SLACK: f64 = 1e-12;
@@ -37,6 +39,59 @@ impl Weighting {
         normalise(out);
     }
 
+    /// [`Weighting::weigh`] at eight points, to the bit; `out` is as long as `d`.
+    #[inline(always)]
+    pub(crate) fn weigh_all<S: Simd>(&self, s: S, d: &[f64x8<S>], out: &mut [f64x8<S>]) {
+        let mut sum = f64x8::splat(s, 0.0);
+        if let Some(smooth) = self.smooth() {
+            for (w, &d) in out.iter_mut().zip(d) {
+                *w = smooth.kernels(s, d);
+                sum += *w;
+            }
+        }
+        let fine = sum.simd_gt(f64x8::splat(s, 0.0)) & sum.simd_lt(f64x8::splat(s, f64::INFINITY));
+        if fine.all_true() {
+            for w in out {
+                *w /= sum;
+            }
+            return;
+        }
+        for lane in 0..LANES {
+            let row: Vec<f64> = d.iter().map(|d| d[lane]).collect();
+            let mut weights = vec![0.0; row.len()];
+            self.weigh(&row, &mut weights);
+            for (out, w) in out.iter_mut().zip(weights) {
+                out[lane] = w;
+            }
+        }
+    }
+
+    /// [`Weighting::enclose`] over eight boxes; `out` is as long as `d`.
+    #[inline(always)]
+    pub(crate) fn enclose_all<S: Simd>(&self, s: S, d: &[Interval8<S>], out: &mut [Interval8<S>]) {
+        if let Some(smooth) = self.smooth() {
+            return smooth.shares(s, d, out);
+        }
+        for lane in 0..LANES {
+            let row: Vec<_> = d.iter().map(|d| Interval::new(d.lo[lane], d.hi[lane])).collect();
+            let mut ranges = vec![Interval::ALL; row.len()];
+            self.enclose(&row, &mut ranges);
+            for (out, range) in out.iter_mut().zip(ranges) {
+                (out.lo[lane], out.hi[lane]) = (range.lo, range.hi);
+            }
+        }
+    }
+
+    /// The smooth form where it is made of products alone.
+    fn smooth(&self) -> Option<Smooth> {
+        match *self {
+            Self::Smooth { epsilon, power } if power == 2.0 || power == 4.0 => {
+                Some(Smooth { epsilon, twice: power == 4.0 })
+            }
+            _ => None,
+        }
+    }
+
     /// Enclosures of the weights when each distance lies in its interval.
     ///
     /// With kernels in `[lo, hi]` a weight lies between `lo_i / (lo_i + sum of the others' hi)` and
@@ -65,6 +120,51 @@ impl Weighting {
             }
             Self::InverseSquare { epsilon } => (d.max(0.0) + epsilon).powi(-2),
             Self::Transfinite => 1.0 / d.abs(),
+        }
+    }
+}
+
+/// [`Weighting::Smooth`] of power 2, or 4.
+#[derive(Clone, Copy)]
+struct Smooth {
+    epsilon: f64,
+    /// Whether the power is 4.
+    twice: bool,
+}
+
+impl Smooth {
+    /// [`Weighting::kernel`] of eight distances.
+    #[inline(always)]
+    fn kernels<S: Simd>(&self, s: S, d: f64x8<S>) -> f64x8<S> {
+        let one = f64x8::splat(s, 1.0);
+        let base = d.abs() / self.epsilon + one;
+        let base = d.simd_lt(f64x8::splat(s, 0.0)).select(base, one / base);
+        let square = base * base;
+        if self.twice { square * square } else { square }
+    }
+}
+
+impl Smooth {
+    /// [`shares`] of eight boxes.
+    #[inline(always)]
+    fn shares<S: Simd>(&self, s: S, d: &[Interval8<S>], out: &mut [Interval8<S>]) {
+        let mut left = Interval8::point(s, 0.0);
+        for (o, d) in out.iter_mut().zip(d) {
+            *o = left;
+            left.lo += self.kernels(s, d.hi);
+            left.hi += self.kernels(s, d.lo);
+        }
+        let (zero, one) = (f64x8::splat(s, 0.0), f64x8::splat(s, 1.0));
+        let mut right = Interval8::point(s, 0.0);
+        for (o, d) in out.iter_mut().zip(d).rev() {
+            let (own_lo, own_hi) = (self.kernels(s, d.hi), self.kernels(s, d.lo));
+            let lo = own_lo / (own_lo + (o.hi + right.hi));
+            let hi = own_hi / (own_hi + (o.lo + right.lo));
+            let lo = lo.is_nan().select(zero, lo) - SLACK;
+            let hi = hi.is_nan().select(one, hi) + SLACK;
+            *o = Interval8 { lo: lo.max(zero).min(one), hi: hi.max(zero).min(one) };
+            right.lo += own_lo;
+            right.hi += own_hi;
         }
     }
 }
@@ -149,6 +249,7 @@ fn inverse(d: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fearless_simd::{Level, dispatch};
     use proptest::prelude::*;
 
     const ALL: [Weighting; 4] = [
@@ -206,6 +307,42 @@ mod tests {
                 let got = weights(w, &d);
                 prop_assert!((got.iter().sum::<f64>() - 1.0).abs() < 1e-12);
                 prop_assert!(got.iter().all(|w| (0.0..=1.0).contains(w)));
+            }
+        }
+
+        /// What a point or box gives alone and among eight.
+        #[test]
+        fn eight_at_once_are_eight_alone(
+            d in prop::collection::vec(prop::array::uniform8((-200.0..500.0f64, 0.0..30.0f64)), 1..9)
+        ) {
+            for w in ALL {
+                let (values, ranges) = dispatch!(Level::new(), s => {
+                    let at: Vec<_> =
+                        d.iter().map(|d| f64x8::simd_from(s, d.map(|(d, _)| d))).collect();
+                    let of = |sign: f64| move |(d, r): (f64, f64)| d + sign * r;
+                    let over: Vec<_> = d
+                        .iter()
+                        .map(|d| Interval8 {
+                            lo: f64x8::simd_from(s, d.map(of(-1.0))),
+                            hi: f64x8::simd_from(s, d.map(of(1.0))),
+                        })
+                        .collect();
+                    let (mut values, mut ranges) = (at.clone(), over.clone());
+                    w.weigh_all(s, &at, &mut values);
+                    w.enclose_all(s, &over, &mut ranges);
+                    let values: Vec<[f64; LANES]> = values.into_iter().map(Into::into).collect();
+                    (values, ranges.into_iter().map(Interval8::lanes).collect::<Vec<_>>())
+                });
+                for lane in 0..LANES {
+                    let row: Vec<f64> = d.iter().map(|d| d[lane].0).collect();
+                    let alone = weights(w, &row);
+                    prop_assert!(values.iter().zip(&alone).all(|(v, a)| v[lane] == *a));
+                    let row: Vec<_> =
+                        d.iter().map(|d| Interval::ball(d[lane].0, d[lane].1)).collect();
+                    let mut alone = vec![Interval::ALL; row.len()];
+                    w.enclose(&row, &mut alone);
+                    prop_assert!(ranges.iter().zip(&alone).all(|(r, a)| r[lane] == *a));
+                }
             }
         }
 

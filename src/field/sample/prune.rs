@@ -55,7 +55,7 @@ impl<'a> Pruner<'a> {
     }
 
     /// The sign each whole box has, if field and bound can tell.
-    fn sides(&self, boxes: &[Aabb]) -> Vec<Option<Side>> {
+    pub(super) fn sides(&self, boxes: &[Aabb]) -> Vec<Option<Side>> {
         let near = |b: &Aabb| !b.meet(self.support).is_empty();
         let asked: Vec<Aabb> = boxes.iter().copied().filter(near).collect();
         let mut bounds = vec![Interval::ALL; asked.len()];
@@ -72,19 +72,9 @@ impl<'a> Pruner<'a> {
         boxes.iter().map(side).collect()
     }
 
-    /// The sign the whole box has, if field and bound can tell.
-    pub(super) fn side(&self, b: &Aabb) -> Option<Side> {
-        self.sides(&[*b])[0]
-    }
-
-    /// The sign of all samples from `lo` to `lo + cells`, both included. The border is outside, so
-    /// what reaches it is never all inside.
-    pub(super) fn closed_side(&self, lo: [u32; 3], cells: u32) -> Option<Side> {
-        self.closed_sides(&[lo], cells)[0]
-    }
-
-    /// The same for several corners `lo`.
-    fn closed_sides(&self, lo: &[[u32; 3]], cells: u32) -> Vec<Option<Side>> {
+    /// The sign of all samples from each of `lo` to `lo + cells`, both included. The border is outside,
+    /// so what reaches it is never all inside.
+    pub(super) fn closed_sides(&self, lo: &[[u32; 3]], cells: u32) -> Vec<Option<Side>> {
         let last = |a: usize| self.lattice.size[a].saturating_sub(1);
         let corners = |lo: &[u32; 3]| -> [[u32; 3]; 2] {
             let hi: [u32; 3] = std::array::from_fn(|a| lo[a].saturating_add(cells).min(last(a)));

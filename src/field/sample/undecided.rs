@@ -80,7 +80,8 @@ pub fn undecided(
         check(job)?;
         let mut found = Undecided::default();
         if matches!(bricks.bricks.get(i), Some(Brick::Band(_))) {
-            search.block(of, bricks.place(i).map(|b| b * BRICK), BRICK, floor_levels, &mut found);
+            let lo = bricks.place(i).map(|b| b * BRICK);
+            search.blocks(of, &[lo], BRICK, floor_levels, &mut found);
         }
         Ok(found)
     };
@@ -109,20 +110,18 @@ enum Found {
 }
 
 impl Search<'_> {
-    /// Counts the cells from `lo`, `cells` a side.
-    fn block(&self, of: &Sampling, lo: [u32; 3], cells: u32, levels: u32, out: &mut Undecided) {
-        if (0..3).any(|a| lo[a].saturating_add(1) >= self.lattice.size[a]) {
-            return;
-        }
-        if self.pruner.closed_side(lo, cells).is_some() {
-            return;
-        }
-        if cells == 1 {
-            return self.cell(of, lo, levels, out);
-        }
-        for n in 0..8 {
-            let part = std::array::from_fn(|a| lo[a] + cells / 2 * (n >> a & 1));
-            self.block(of, part, cells / 2, levels, out);
+    /// Counts the cells of blocks, each from a sample of `lo` on, `cells` a side.
+    fn blocks(&self, of: &Sampling, lo: &[[u32; 3]], cells: u32, levels: u32, out: &mut Undecided) {
+        let sides = self.pruner.closed_sides(lo, cells);
+        for (&lo, _) in lo.iter().zip(sides).filter(|(_, side)| side.is_none()) {
+            if cells == 1 {
+                self.cell(of, lo, levels, out);
+                continue;
+            }
+            let part = |n: u32| std::array::from_fn(|a| lo[a] + cells / 2 * (n >> a & 1));
+            let within = |lo: &[u32; 3]| (0..3).all(|a| lo[a] + 1 < self.lattice.size[a]);
+            let parts: Vec<[u32; 3]> = (0..8).map(part).filter(within).collect();
+            self.blocks(of, &parts, cells / 2, levels, out);
         }
     }
 
@@ -163,13 +162,13 @@ impl Search<'_> {
             return Found::Other(at[n]);
         }
         let mut all = Found::Decided;
-        for n in 0..8 {
+        let parts: [Aabb; 8] = std::array::from_fn(|n| {
             let lo = (n & 1) + 3 * (n >> 1 & 1) + 9 * (n >> 2);
-            let part = Aabb::new(at[lo], at[lo + 13]);
-            if self.pruner.side(&part).is_some() {
-                continue;
-            }
-            match self.subdivide(&part, inside, levels - 1) {
+            Aabb::new(at[lo], at[lo + 13])
+        });
+        let sides = self.pruner.sides(&parts);
+        for (part, _) in parts.iter().zip(sides).filter(|(_, side)| side.is_none()) {
+            match self.subdivide(part, inside, levels - 1) {
                 Found::Other(p) => return Found::Other(p),
                 Found::Left => all = Found::Left,
                 Found::Decided => {}
