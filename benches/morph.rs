@@ -114,10 +114,11 @@ fn stages(c: &mut Criterion, folder: &Path) {
         b.iter(|| MeshField::new(&mesh, &Default::default(), &Quiet));
     });
     let exact = must(MeshField::new(&mesh, &Default::default(), &Quiet).map_err(Into::into)).0;
+    let exact: Shared = Arc::new(exact);
     for cells in [128, 256] {
         let step = exact.support().size().max_element() / f64::from(cells);
         group.bench_function(BenchmarkId::new("sampled form", cells), |b| {
-            b.iter(|| Sampled::new(&exact, step, &Quiet));
+            b.iter(|| Sampled::new(exact.clone(), step, &Quiet));
         });
         let scene = must(open(&folder.join("pair.toml"), cells));
         let (field, on): (Shared, Lattice) = (must(hybrid(&scene)), scene.lattice);

@@ -96,6 +96,13 @@ impl Bvh {
         self.corners.len()
     }
 
+    /// Memory that it takes, bytes.
+    pub fn bytes(&self) -> usize {
+        let wide = self.wide.bytes() + size_of_val(&self.tris[..]);
+        let corners = size_of_val(&self.corners[..]) + size_of_val(&self.faces[..]);
+        wide + size_of_val(&self.nodes[..]) + corners
+    }
+
     /// The triangles that the tree was built from, neighbours in space mostly next to each other.
     pub fn order(&self) -> &[u32] {
         &self.faces

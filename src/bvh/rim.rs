@@ -36,6 +36,11 @@ impl Rim {
         Self { bvh, lengths, edges }
     }
 
+    /// Memory that they take, bytes.
+    pub fn bytes(&self) -> usize {
+        self.bvh.bytes() + size_of_val(&self.lengths[..]) + size_of_val(&self.edges[..])
+    }
+
     /// Length of all rims, mm.
     pub fn length(&self) -> f64 {
         self.lengths.first().copied().unwrap_or(0.0)

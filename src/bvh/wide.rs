@@ -120,6 +120,11 @@ impl Eight {
 }
 
 impl Wide {
+    /// Memory that it takes, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.packs[..])
+    }
+
     /// From the binary tree and its triangles in slots.
     pub(super) fn new(nodes: &[Node], tris: &[Tri]) -> Self {
         let mut wide = Self::default();

@@ -186,8 +186,18 @@ impl Field for Moved {
         self.field.bound(&image(&self.back, b)).scale(self.scale)
     }
 
+    fn bounds(&self, boxes: &[Aabb], out: &mut [Interval]) {
+        let moved: Vec<Aabb> = boxes.iter().map(|b| image(&self.back, b)).collect();
+        self.field.bounds(&moved, out);
+        out.iter_mut().for_each(|f| *f = f.scale(self.scale));
+    }
+
     fn support(&self) -> Aabb {
         image(&self.by, &self.field.support())
+    }
+
+    fn bytes(&self) -> usize {
+        self.field.bytes()
     }
 
     fn values(&self, at: &[DVec3], out: &mut [f64]) {

@@ -36,6 +36,11 @@ pub trait Field: Send + Sync {
     /// A box outside which f > 0.
     fn support(&self) -> Aabb;
 
+    /// Memory that is held for it, bytes, roughly; little unless it is made of many triangles.
+    fn bytes(&self) -> usize {
+        0
+    }
+
     /// Values at many points: one virtual call a brick instead of one a point. `out` is as long as
     /// `at`. Must give exactly what [`Field::value`] gives, point by point. Callers order the
     /// points so that contiguous runs lie close together.

@@ -235,6 +235,10 @@ impl Field for Walls {
         self.solid.bound(b).min(sheet.max(floor).widen(round_off))
     }
 
+    fn bytes(&self) -> usize {
+        self.solid.bytes() + self.middle.bytes()
+    }
+
     fn support(&self) -> Aabb {
         let mut sheet = self.middle.bounds().grow(self.half);
         sheet.min.z = sheet.min.z.max(self.floor);
@@ -317,7 +321,7 @@ mod tests {
             }
             assert!(*v > 0.0 || field.support().contains(*p));
         }
-        let volume = Sampled::new(&*field, 2.0, &Quiet).unwrap().volume();
+        let volume = Sampled::new(field, 2.0, &Quiet).unwrap().volume();
         assert!(volume > 9.0 * 80.0 * 60.0 && volume < 9.0 * 89.0 * 69.0, "{volume}");
     }
 }

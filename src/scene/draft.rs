@@ -328,6 +328,8 @@ pub(super) struct Use {
     pub alone: bool,
     /// Whether some variant looks its field up many times.
     pub morphs: bool,
+    /// Whether some variant looks it up nearly everywhere: one of two shapes, or without features.
+    pub everywhere: bool,
 }
 
 /// The shapes that some variant, or the place of one of them, needs, by name.
@@ -336,11 +338,13 @@ fn uses(recipe: &Recipe) -> Result<BTreeMap<String, Use>, Problem> {
     for (at, entry) in recipe.variants() {
         let of = plan::shape_names(&entry, recipe, &at)?;
         plan::method(&entry, &of, recipe, &at)?;
-        let alone = of.len() == 1;
+        let count = of.len();
+        let alone = count == 1;
         for name in of {
             let known = uses.entry(name.clone()).or_default();
             known.alone |= alone;
             known.morphs |= !alone;
+            known.everywhere |= count < 3 || recipe.features.is_empty();
             known.add(&asked(&entry));
             if let PlainOr::Table(PlaceLike { like }) = &recipe.shapes[&name].place {
                 uses.entry(like.clone()).or_default().add(&asked(&entry));
@@ -351,6 +355,11 @@ fn uses(recipe: &Recipe) -> Result<BTreeMap<String, Use>, Problem> {
 }
 
 impl Use {
+    /// Whether hybrids draw on a part of it only: on some shapes here, on others there.
+    pub fn partly(&self) -> bool {
+        !self.everywhere
+    }
+
     fn add(&mut self, times: &[f64]) {
         for t in times {
             if !self.times.contains(t) {

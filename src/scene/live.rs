@@ -6,12 +6,12 @@ use super::moving::Moving;
 use super::place::{Similarity, place};
 use super::skinned::{How, Skinned, SkinnedError};
 use super::{Input, digest, surface};
+use crate::field::Shared;
 use crate::field::csg::Moved;
 use crate::field::mesh::{MeshField, MeshFieldError, MeshOptions, Sign, Thicken, Which};
 use crate::field::sampled::Sampled;
 use crate::field::solid::Assembly;
 use crate::field::walls::thickened;
-use crate::field::{Field, Shared};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Assume, TriMesh, Unit, Up, read};
 use crate::morph::{Foot, MorphError};
@@ -356,7 +356,7 @@ pub(super) fn make(
     };
     let made = start.elapsed().as_secs_f64();
     let (field, volume) = if purpose.morphs || !purpose.alone {
-        sampled(&*exact, step, job)?
+        sampled(exact.clone(), purpose.partly(), step, job)?
     } else {
         (exact.clone(), f64::NAN)
     };
@@ -406,13 +406,15 @@ fn options(entry: &ShapeEntry) -> MeshOptions {
     MeshOptions { thicken, sign, ..MeshOptions::default() }
 }
 
-/// The sampled form of a field at a fine step, mm.
+/// The sampled form of a field at a fine step, mm; of one that is looked up in parts only, made in parts.
 pub(super) fn sampled(
-    exact: &dyn Field,
+    exact: Shared,
+    partly: bool,
     step: f64,
     job: &dyn Job,
 ) -> Result<(Shared, f64), Cancelled> {
-    let sampled = Sampled::new(exact, step, job)?;
+    let new = if partly { Sampled::on_demand } else { Sampled::new };
+    let sampled = new(exact, step, job)?;
     let volume = sampled.volume();
     Ok((Arc::new(sampled), volume))
 }

@@ -61,6 +61,12 @@ impl Winding {
         self.bvh.is_empty()
     }
 
+    /// Memory that it takes, bytes; beside a tree that another may have too.
+    pub fn bytes(&self, other: &Arc<Bvh>) -> usize {
+        let own = if Arc::ptr_eq(&self.bvh, other) { 0 } else { self.bvh.bytes() };
+        own + size_of_val(&self.dipoles[..])
+    }
+
     /// The box round the triangles.
     pub fn bounds(&self) -> Aabb {
         self.bvh.bounds()

@@ -48,6 +48,11 @@ impl Inside {
         Self { closed, open, rim: Rim::new(rim), bounds }
     }
 
+    /// Memory that it takes, bytes; beside the tree of the surface.
+    pub(super) fn bytes(&self, surface: &Arc<Bvh>) -> usize {
+        self.closed.bytes(surface) + self.open.bytes(surface) + self.rim.bytes()
+    }
+
     /// Lets go of what only distances need, where nobody else has the trees.
     pub(super) fn forget_distances(&mut self) {
         self.closed.forget_distances();

@@ -204,4 +204,9 @@ impl Field for MeshField {
         let sheet = self.sheet.as_ref().map_or(Aabb::EMPTY, |s| s.faces.bounds().grow(s.half));
         solid.hull(sheet)
     }
+
+    fn bytes(&self) -> usize {
+        let solid = self.solid.as_ref().map_or(0, Solid::bytes);
+        solid + self.sheet.as_ref().map_or(0, |s| s.faces.bytes())
+    }
 }

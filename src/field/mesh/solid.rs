@@ -43,6 +43,14 @@ impl Solid {
         Self { surface, trust, ghosts, culled, inside, touch, blur }
     }
 
+    /// Memory that it takes, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let trees = [&*self.surface, &self.ghosts, &self.culled].map(Bvh::bytes);
+        trees.iter().sum::<usize>()
+            + self.inside.bytes(&self.surface)
+            + size_of_val(&self.trust[..])
+    }
+
     /// The box outside which nothing is inside.
     pub(super) fn support(&self) -> Aabb {
         *self.inside.bounds()

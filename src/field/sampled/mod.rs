@@ -7,17 +7,26 @@
 //! meet, the finer one takes the coarser one's values on the common face, so the whole is
 //! continuous.
 //!
+//! Leaves through which the surface may go are made at once, the rest when a value of theirs is asked
+//! for: a hybrid asks for less than half of them. What the field promises over a leaf that is not
+//! made bounds it, so bounds never depend on what was asked for before; and a leaf's samples are the
+//! same whenever they are made, and by whichever thread.
+//!
 //! **Error.** For a signed distance (1-Lipschitz) a look-up differs from the field by at most
 //! (√3/2) step of its leaf, on the fine level (√3/2) of the fine step; near a smooth surface of
 //! radius of curvature R it is about step²/(4R).
 
 mod build;
+mod leaf;
+mod octree;
 mod range;
 
 use super::{Field, Shared};
 use crate::num::{Aabb, Interval};
 use glam::{DVec3, IVec3};
+use octree::Grid;
 use range::Ranges;
+use std::sync::OnceLock;
 
 /// Cells along a side of a leaf.
 const CELLS: i32 = 8;
@@ -35,10 +44,14 @@ struct Leaf {
     level: u32,
 }
 
+/// The samples of a leaf, x fastest.
+type Samples = Box<[f32; LEAF]>;
+
 /// A field turned into samples.
 pub struct Sampled {
-    origin: DVec3,
-    step: f64,
+    /// What leaves are made of; gone when all are made.
+    field: Option<Shared>,
+    grid: Grid,
     inverse: f64,
     /// The sampled box.
     bounds: Aabb,
@@ -46,8 +59,8 @@ pub struct Sampled {
     table: Vec<u32>,
     table_size: IVec3,
     leaves: Vec<Leaf>,
-    /// 9³ samples a leaf, x fastest.
-    data: Vec<f32>,
+    /// Of each leaf, once they are made.
+    samples: Vec<OnceLock<Samples>>,
     ranges: Ranges,
     support: Aabb,
     volume: f64,
@@ -56,12 +69,13 @@ pub struct Sampled {
 impl Sampled {
     /// Fine step, mm.
     pub fn step(&self) -> f64 {
-        self.step
+        self.grid.step
     }
 
-    /// Number of leaves and bytes held.
-    pub fn size(&self) -> (usize, usize) {
-        (self.leaves.len(), self.data.len() * 4 + self.table.len() * 4)
+    /// Bytes that the leaves take which are made, and which are not.
+    pub fn bytes(&self) -> (usize, usize) {
+        let made = self.samples.iter().filter(|s| s.get().is_some()).count();
+        (made * size_of::<[f32; LEAF]>(), (self.leaves.len() - made) * size_of::<[f32; LEAF]>())
     }
 
     /// Volume of the inside, mm³, counted from the samples (each cell by the share of its trilinear
@@ -89,8 +103,8 @@ impl Sampled {
         let cell = local.floor().clamp(DVec3::ZERO, DVec3::splat(f64::from(CELLS - 1)));
         let f = local - cell;
         let (i, j, k) = (cell.x as usize, cell.y as usize, cell.z as usize);
-        let at = leaf * LEAF + i + SIDE * (j + SIDE * k);
-        let s = &self.data[at..at + SIDE * SIDE + SIDE + 2];
+        let at = i + SIDE * (j + SIDE * k);
+        let s = &self.samples(leaf)[at..at + SIDE * SIDE + SIDE + 2];
         let row = |o: usize| {
             let (a, b) = (f64::from(s[o]), f64::from(s[o + 1]));
             a + (b - a) * f.x
@@ -107,7 +121,7 @@ impl Field for Sampled {
         // outside the sampled box: the value at its side plus the way there, which keeps a
         // distance 1-Lipschitz
         let inside = self.bounds.clamp(p);
-        self.interpolate((inside - self.origin) * self.inverse) + (p - inside).length()
+        self.interpolate((inside - self.grid.origin) * self.inverse) + (p - inside).length()
     }
 
     fn bound(&self, b: &Aabb) -> Interval {
@@ -115,28 +129,20 @@ impl Field for Sampled {
         let inside = Aabb::new(self.bounds.clamp(b.min), self.bounds.clamp(b.max));
         let (range, slope) = self.range(&inside);
         let away = b.corners().iter().map(|&p| self.bounds.distance(p)).fold(0.0, f64::max);
-        let by_samples = Interval::new(range.lo, range.hi + away);
+        let by_samples = Interval::new(range.lo, range.hi + away).widen(1e-9 * self.grid.step);
+        if slope == f64::INFINITY {
+            // a value may not be made only for a bound
+            return by_samples;
+        }
         // the trilinear form of a leaf changes by at most `slope` a mm, the way outside by 1
         let steep = if away > 0.0 { slope + 1.0 } else { slope };
         let by_slope = Interval::ball(self.value(c), steep * b.radius());
-        by_samples.meet(by_slope).widen(1e-9 * self.step)
+        by_samples.meet(by_slope.widen(1e-9 * self.grid.step))
     }
 
     fn support(&self) -> Aabb {
         self.support
     }
-}
-
-/// Samples a field and shares the result.
-///
-/// # Errors
-/// [`crate::job::Cancelled`] when the job is.
-pub fn sampled(
-    field: &dyn Field,
-    step: f64,
-    job: &dyn crate::job::Job,
-) -> Result<Shared, crate::job::Cancelled> {
-    Ok(std::sync::Arc::new(Sampled::new(field, step, job)?))
 }
 
 #[cfg(test)]

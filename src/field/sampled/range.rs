@@ -1,6 +1,7 @@
-//! Exact ranges: least, greatest and steepest value of every leaf, and of blocks of them.
+//! Ranges: least, greatest and steepest value of every leaf, and of blocks of them. Of leaves that the
+//! surface may go through they are exact, of others what the field promises.
 
-use super::{CELLS, LEAF, Leaf, SIDE, Sampled};
+use super::{CELLS, Leaf, SIDE, Sampled};
 use crate::num::{Aabb, Interval};
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
@@ -10,7 +11,7 @@ use rayon::prelude::*;
 struct Span {
     lo: f32,
     hi: f32,
-    /// Largest change of the trilinear value a mm.
+    /// Largest change of the trilinear value a mm; infinite where it is not known.
     slope: f32,
 }
 
@@ -30,11 +31,13 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
-    pub(super) fn new(s: &Sampled) -> Self {
-        let leaves: Vec<Span> = (0..s.leaves.len())
-            .into_par_iter()
-            .map(|l| span(&s.data[l * LEAF..(l + 1) * LEAF], s.step, s.leaves[l].level))
-            .collect();
+    /// `promised` is what the field promises over each leaf.
+    pub(super) fn new(s: &Sampled, promised: &[Interval]) -> Self {
+        let span = |(leaf, &range): (usize, &Interval)| match s.samples[leaf].get() {
+            Some(samples) if crossed(range) => span(&samples[..], s.step(), s.leaves[leaf].level),
+            _ => Span { lo: range.lo as f32, hi: range.hi as f32, slope: f32::INFINITY },
+        };
+        let leaves: Vec<Span> = promised.par_iter().enumerate().map(span).collect();
         let mut size = s.table_size;
         let mut spans: Vec<Span> = s.table.iter().map(|&l| leaves[l as usize]).collect();
         let mut levels = Vec::new();
@@ -59,6 +62,11 @@ impl Ranges {
     pub(super) fn leaf(&self, l: usize) -> Interval {
         Interval::new(f64::from(self.leaves[l].lo), f64::from(self.leaves[l].hi))
     }
+}
+
+/// Whether the surface may go through a leaf over which the field promises that range.
+pub(super) fn crossed(range: Interval) -> bool {
+    range.lo <= 0.0 && range.hi >= 0.0
 }
 
 fn span(s: &[f32], step: f64, level: u32) -> Span {
@@ -96,8 +104,8 @@ fn steepest(next: &[f32], here: &[f32]) -> f32 {
 impl Sampled {
     /// Range of the trilinear values on a box inside the sampled box, and their slope.
     pub(super) fn range(&self, b: &Aabb) -> (Interval, f64) {
-        let low = ((b.min - self.origin) * self.inverse).max(DVec3::ZERO);
-        let high = ((b.max - self.origin) * self.inverse).max(DVec3::ZERO);
+        let low = ((b.min - self.grid.origin) * self.inverse).max(DVec3::ZERO);
+        let high = ((b.max - self.grid.origin) * self.inverse).max(DVec3::ZERO);
         let cells = self.table_size * CELLS - 1;
         let (first, last) = (low.as_ivec3().min(cells), high.as_ivec3().min(cells));
         let (b0, b1) = (first / CELLS, last / CELLS);
@@ -137,14 +145,15 @@ impl Sampled {
         let a = ((low - corner.as_dvec3()) * scale).clamp(DVec3::ZERO, top).floor().as_ivec3();
         let b = ((high - corner.as_dvec3()) * scale).clamp(DVec3::ZERO, top).ceil().as_ivec3();
         let whole = self.ranges.leaves[leaf];
-        if a == IVec3::ZERO && b == IVec3::splat(CELLS) {
+        if whole.slope == f32::INFINITY || a == IVec3::ZERO && b == IVec3::splat(CELLS) {
             return whole;
         }
+        let samples = self.samples(leaf);
         let (mut lo, mut hi) = (f32::INFINITY, f32::NEG_INFINITY);
         for k in a.z..=b.z {
             for j in a.y..=b.y {
-                let row = leaf * LEAF + SIDE * (j as usize + SIDE * k as usize);
-                for &v in &self.data[row + a.x as usize..=row + b.x as usize] {
+                let row = SIDE * (j as usize + SIDE * k as usize);
+                for &v in &samples[row + a.x as usize..=row + b.x as usize] {
                     (lo, hi) = (lo.min(v), hi.max(v));
                 }
             }

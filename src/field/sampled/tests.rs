@@ -1,6 +1,8 @@
 use super::*;
 use crate::job::Quiet;
+use std::sync::Arc;
 
+#[derive(Clone, Copy)]
 struct Ball(DVec3, f64);
 
 impl Field for Ball {
@@ -31,7 +33,7 @@ fn error_is_within_the_stated_bound_and_falls_with_the_step() {
     let ball = Ball(DVec3::new(3.0, -2.0, 1.0), 40.0);
     let mut last = f64::INFINITY;
     for step in [4.0, 2.0, 1.0] {
-        let s = Sampled::new(&ball, step, &Quiet).unwrap();
+        let s = Sampled::new(Arc::new(ball), step, &Quiet).unwrap();
         let mut near = 0.0f64;
         for p in points(20_000, 60.0) {
             let (got, want) = (s.value(p), ball.value(p));
@@ -51,7 +53,7 @@ fn error_is_within_the_stated_bound_and_falls_with_the_step() {
 #[test]
 fn continuous_across_levels() {
     let ball = Ball(DVec3::ZERO, 80.0);
-    let s = Sampled::new(&ball, 0.5, &Quiet).unwrap();
+    let s = Sampled::new(Arc::new(ball), 0.5, &Quiet).unwrap();
     assert!(s.leaves.iter().any(|l| l.level > 1), "the test needs several levels");
     for p in points(20_000, 90.0) {
         // the steepest a trilinear form of a distance can be is √3, and twice 1e-6 of way
@@ -60,9 +62,9 @@ fn continuous_across_levels() {
     }
     // across every plane on which leaves may end
     for p in points(5_000, 90.0) {
-        let mut q = (p - s.origin) * s.inverse;
+        let mut q = (p - s.grid.origin) * s.inverse;
         q.x = (q.x / 8.0).round() * 8.0;
-        let q = q * s.step + s.origin;
+        let q = q * s.step() + s.grid.origin;
         let e = DVec3::X * 1e-7;
         assert!((s.value(q + e) - s.value(q - e)).abs() < 1e-5, "jump at {q}");
     }
@@ -71,7 +73,7 @@ fn continuous_across_levels() {
 #[test]
 fn bound_holds() {
     let ball = Ball(DVec3::new(1.0, 2.0, 3.0), 25.0);
-    let s = Sampled::new(&ball, 1.5, &Quiet).unwrap();
+    let s = Sampled::new(Arc::new(ball), 1.5, &Quiet).unwrap();
     let mut at = points(60_000, 1.0);
     for c in points(600, 70.0) {
         let half = at.next().unwrap().abs() * 30.0 * at.next().unwrap().x.abs();
@@ -86,7 +88,7 @@ fn bound_holds() {
 
 #[test]
 fn volume_of_a_ball() {
-    let s = Sampled::new(&Ball(DVec3::ZERO, 30.0), 1.0, &Quiet).unwrap();
+    let s = Sampled::new(Arc::new(Ball(DVec3::ZERO, 30.0)), 1.0, &Quiet).unwrap();
     let want = 4.0 / 3.0 * std::f64::consts::PI * 27_000.0;
     assert!((s.volume() / want - 1.0).abs() < 0.003, "{} against {want}", s.volume());
 }

@@ -16,7 +16,7 @@ fn mesh(surface: &dyn Surface, tolerance: f64) -> TriMesh {
 
 fn volume(mesh: &TriMesh, options: SkinOptions, step: f64) -> f64 {
     let (field, _) = skin(mesh, &options, &Quiet).unwrap();
-    Sampled::new(&*field, step, &Quiet).unwrap().volume()
+    Sampled::new(field, step, &Quiet).unwrap().volume()
 }
 
 fn ball() -> SuperEllipsoid {
