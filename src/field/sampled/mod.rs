@@ -100,8 +100,9 @@ impl Sampled {
     fn interpolate_in(&self, leaf: usize, u: DVec3) -> f64 {
         let Leaf { corner, level } = self.leaves[leaf];
         let local = (u - corner.as_dvec3()) * (1.0 / f64::from(1u32 << level));
-        let cell = local.floor().clamp(DVec3::ZERO, DVec3::splat(f64::from(CELLS - 1)));
-        let f = local - cell;
+        // towards zero is down here, and no call
+        let cell = local.as_ivec3().clamp(IVec3::ZERO, IVec3::splat(CELLS - 1));
+        let f = local - cell.as_dvec3();
         let (i, j, k) = (cell.x as usize, cell.y as usize, cell.z as usize);
         let at = i + SIDE * (j + SIDE * k);
         let s = &self.samples(leaf)[at..at + SIDE * SIDE + SIDE + 2];

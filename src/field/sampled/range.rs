@@ -142,8 +142,11 @@ impl Sampled {
         let Leaf { corner, level } = self.leaves[leaf];
         let scale = 1.0 / f64::from(1u32 << level);
         let top = DVec3::splat(f64::from(CELLS));
-        let a = ((low - corner.as_dvec3()) * scale).clamp(DVec3::ZERO, top).floor().as_ivec3();
-        let b = ((high - corner.as_dvec3()) * scale).clamp(DVec3::ZERO, top).ceil().as_ivec3();
+        let place = |p: DVec3| ((p - corner.as_dvec3()) * scale).clamp(DVec3::ZERO, top);
+        let (a, to) = (place(low).as_ivec3(), place(high));
+        // rounded up
+        let b = to.as_ivec3();
+        let b = b + IVec3::from(b.as_dvec3().cmplt(to));
         let whole = self.ranges.leaves[leaf];
         if whole.slope == f32::INFINITY || a == IVec3::ZERO && b == IVec3::splat(CELLS) {
             return whole;

@@ -1,5 +1,6 @@
 use super::*;
 use crate::job::Quiet;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 #[derive(Clone, Copy)]
@@ -84,6 +85,70 @@ fn bound_holds() {
             assert!(f.contains(s.value(p)), "{b:?}: {} not in {f:?}", s.value(p));
         }
     }
+}
+
+/// Two balls with a gap, so that leaves of all levels meet; as heavy as told.
+#[derive(Clone, Copy)]
+struct Balls(usize);
+
+impl Balls {
+    const EACH: [Ball; 2] =
+        [Ball(DVec3::new(-30.0, 1.0, 2.0), 22.0), Ball(DVec3::new(35.0, 4.0, -3.0), 9.5)];
+}
+
+impl Field for Balls {
+    fn value(&self, p: DVec3) -> f64 {
+        Self::EACH.iter().map(|b| b.value(p)).fold(f64::INFINITY, f64::min)
+    }
+    fn bound(&self, b: &Aabb) -> Interval {
+        Self::EACH[0].bound(b).min(Self::EACH[1].bound(b))
+    }
+    fn support(&self) -> Aabb {
+        Self::EACH[0].support().hull(Self::EACH[1].support())
+    }
+    fn bytes(&self) -> usize {
+        self.0
+    }
+}
+
+#[test]
+fn on_demand_the_samples_are_the_same_to_the_bit() {
+    let all = Sampled::new(Arc::new(Balls(0)), 0.7, &Quiet).unwrap();
+    let some = Sampled::on_demand(Arc::new(Balls(0)), 0.7, &Quiet).unwrap();
+    assert_eq!(all.bytes().1, 0);
+    let (made, left) = some.bytes();
+    assert!(left > made, "{made} bytes of {} are made", made + left);
+    assert_eq!(all.volume(), some.volume());
+    let at: Vec<DVec3> = points(30_000, 70.0).collect();
+    let same = |p: &DVec3| all.value(*p).to_bits() == some.value(*p).to_bits();
+    // in any order, by any thread
+    assert!(at.par_iter().rev().all(same));
+    assert!(some.bytes().1 < left);
+}
+
+#[test]
+fn bounds_on_demand_hold_and_do_not_depend_on_what_was_asked() {
+    let s = Sampled::on_demand(Arc::new(Balls(0)), 1.1, &Quiet).unwrap();
+    let mut half = points(500, 12.0);
+    let boxes: Vec<Aabb> =
+        points(500, 75.0).map(|c| Aabb::around(c, half.next().unwrap().abs())).collect();
+    let before: Vec<Interval> = boxes.iter().map(|b| s.bound(b)).collect();
+    let left = s.bytes().1;
+    let unit: Vec<DVec3> = points(40, 1.0).collect();
+    for (b, f) in boxes.iter().zip(&before) {
+        for u in &unit {
+            let p = b.centre() + *u * b.size() * 0.5;
+            assert!(f.contains(s.value(p)), "{b:?}: {} not in {f:?}", s.value(p));
+        }
+    }
+    assert!(s.bytes().1 < left, "bounds made leaves, or values none");
+    assert!(boxes.iter().zip(before).all(|(b, f)| s.bound(b) == f));
+}
+
+#[test]
+fn a_heavy_field_is_sampled_at_once() {
+    let s = Sampled::on_demand(Arc::new(Balls(usize::MAX)), 2.0, &Quiet).unwrap();
+    assert!(s.bytes().1 == 0 && s.field.is_none());
 }
 
 #[test]
