@@ -5,7 +5,7 @@
 //! resident set.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
-use fieldgraft::field::{Field, Shared, mesh::MeshField, sample::sample, sampled::Sampled};
+use fieldgraft::field::{Shared, mesh::MeshField, sample::sample, sampled::Sampled};
 use fieldgraft::grid::Lattice;
 use fieldgraft::iso::{Mesher, extract};
 use fieldgraft::job::Quiet;
@@ -16,6 +16,7 @@ use fieldgraft::scene::{Draft, Scene};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 use std::time::Duration;
 use std::{env, fs};
 
