@@ -347,8 +347,9 @@ proptest! {
     fn batches_agree_with_single_values(seed in 0u32..1000, step in 0.02..0.5) {
         for (f, half) in zoo() {
             let corner = spread(half, 1000)[seed as usize];
-            let bit = |i: u32, a: u32| (0..3).map(|b| (i >> (3 * b + a) & 1) << b).sum::<u32>();
-            let cube = (0..512).map(|i| corner + step * DVec3::from([0, 1, 2].map(|a| f64::from(bit(i, a)))));
+            let bit = |i: u32, a: u32| (0..4).map(|b| (i >> (3 * b + a) & 1) << b).sum::<u32>();
+            // two cubes of 512 side by side: what is known of the one goes on in the other
+            let cube = (0..1024).map(|i| corner + step * DVec3::from([0, 1, 2].map(|a| f64::from(bit(i, a)))));
             let at: Vec<DVec3> = cube.chain(spread(half, 200)).collect();
             let mut out = vec![0.0; at.len()];
             f.values(&at, &mut out);
