@@ -13,7 +13,8 @@ impl Sampled {
         }
     }
 
-    /// Not by `get_or_init`: to wait for another thread that waits for this one would be forever.
+    /// Made first and put there then: two threads may make the same, but none waits for another, which may
+    /// wait for it.
     #[cold]
     fn make_now(&self, leaf: usize) -> &[f32; LEAF] {
         let made = self.make(leaf);
@@ -147,7 +148,12 @@ impl Block {
 }
 
 /// The samples of the far faces by the neighbour that has them in its core.
-static FAR: LazyLock<Vec<Block>> = LazyLock::new(|| Block::all(&ORDER[CORE..], |ijk| ijk / CELLS));
+static FAR: LazyLock<Vec<Block>> = LazyLock::new(|| {
+    let mut blocks = Block::all(&ORDER[CORE..], |ijk| ijk / CELLS);
+    // whole faces first, so that runs of 64 that are asked for are planes
+    blocks.sort_by_key(|b| b.shift.element_sum());
+    blocks
+});
 
 /// The samples on faces by the neighbours that have them too.
 static SIDES: LazyLock<Vec<Block>> = LazyLock::new(|| {
