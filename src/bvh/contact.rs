@@ -1,6 +1,7 @@
+use super::axis;
 use super::pairs::middle;
 use super::triangle::LANES;
-use super::vector::Vec8;
+use crate::num::lanes::Vec8;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
@@ -127,7 +128,7 @@ impl<'a> Outline<'a> {
             lo = lo.min(height);
             hi = hi.max(height);
         }
-        axis.parts([lo, hi], axis.shadow(triangles), self.slack)
+        axis::parts(axis, [lo, hi], axis::shadow(axis, triangles), self.slack)
     }
 }
 

@@ -5,6 +5,7 @@
 //! The tree's shape comes from `obvhs`, built in `f32` on a recentred unit box; the boxes are then
 //! made again in `f64` round the exact corners, so no query has to allow for `f32`.
 
+mod axis;
 mod batch;
 mod contact;
 mod hierarchy;
@@ -16,7 +17,6 @@ mod rim;
 #[cfg(test)]
 mod tests;
 mod triangle;
-mod vector;
 mod wide;
 mod winding;
 

@@ -3,10 +3,11 @@
 use super::Bvh;
 #[cfg(doc)]
 use super::apart;
+use super::axis::{parts, shadow};
 use super::triangle::LANES;
-use super::vector::Vec8;
 use super::wide::Open;
 use crate::num::Aabb;
+use crate::num::lanes::Vec8;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 use std::ops::Range;
@@ -74,7 +75,7 @@ impl<'a> Run<'a> {
             let [a, b, c] = corners;
             let other = [Vec8::splat(s, *a), Vec8::splat(s, *b), Vec8::splat(s, *c)];
             let axis = middle(&other).less(middles);
-            near &= !u64::from(axis.parts(axis.shadow(&own), axis.shadow(&other), reach));
+            near &= !u64::from(parts(axis, shadow(axis, &own), shadow(axis, &other), reach));
             while near != 0 {
                 let lane = near.trailing_zeros() as usize;
                 near &= near - 1;

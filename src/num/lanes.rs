@@ -71,6 +71,42 @@ impl<S: Simd> Vec8<S> {
         Self { x: self.x * k, y: self.y * k, z: self.z * k }
     }
 
+    /// A point less each of these.
+    #[inline(always)]
+    pub fn to(self, p: DVec3) -> Self {
+        Self::splat(self.x.token(), p).less(self)
+    }
+
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> f64x8<S> {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+
+    /// With the same vector in all lanes.
+    #[inline(always)]
+    pub fn along(self, o: DVec3) -> f64x8<S> {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+
+    #[inline(always)]
+    pub fn cross(self, o: Self) -> Self {
+        Self {
+            x: self.y * o.z - o.y * self.z,
+            y: self.z * o.x - o.z * self.x,
+            z: self.x * o.y - o.x * self.y,
+        }
+    }
+
+    /// Of unit length, or zero where it cannot be.
+    #[inline(always)]
+    pub fn unit(self) -> Self {
+        let s = self.x.token();
+        let (zero, one) = (f64x8::splat(s, 0.0), f64x8::splat(s, 1.0));
+        let rate = one / self.dot(self).sqrt();
+        let fine = rate.simd_gt(zero) & rate.simd_lt(f64x8::splat(s, f64::INFINITY));
+        self.times(rate).or(Self::splat(s, DVec3::ZERO), fine)
+    }
+
     #[inline(always)]
     pub fn abs(self) -> Self {
         Self { x: self.x.abs(), y: self.y.abs(), z: self.z.abs() }

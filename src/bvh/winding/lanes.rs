@@ -5,7 +5,7 @@ use super::Winding;
 use super::dipole::Dipole;
 use crate::bvh::Node;
 use crate::bvh::triangle::LANES;
-use crate::bvh::vector::Vec8;
+use crate::num::lanes::Vec8;
 use fearless_simd::{Simd, SimdMask, f64x8, mask64x8, prelude::*};
 use glam::DVec3;
 use std::f64::consts::PI;
