@@ -11,7 +11,7 @@ use fieldgraft::grid::Lattice;
 use fieldgraft::job::{self, Job};
 use fieldgraft::mesh::{check_output, write};
 use fieldgraft::recipe::{GridEntry, MesherEntry, RecipeError};
-use fieldgraft::run::{self, FrameReport, Names, Report, Work, predict_one};
+use fieldgraft::run::{self, FrameReport, FrameResult, Names, Report, Work, predict_one};
 use fieldgraft::scene::{SceneError, Single, sha256};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -132,9 +132,9 @@ impl Convert {
             crumbs: self.crumbs,
             verify: self.making.verify || self.making.strict,
         };
-        let made = run::make(&work, &|_| Ok(field.clone()), watch)?;
-        let mut frame = made.report;
-        if let Some(mesh) = &made.mesh {
+        let FrameResult { mesh, report: mut frame, .. } =
+            run::make(&work, &|_| Ok(field.clone()), watch)?;
+        if let Some(mesh) = &mesh {
             self.write_mesh(&mut frame, mesh, watch)?;
         }
         steps::tell(&frame, watch);

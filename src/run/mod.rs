@@ -139,20 +139,21 @@ pub fn run(
                 Err(MorphError::Cancelled(stop)) => return Err(stop.into()),
                 Err(e) => (FrameResult::failed(&work, e.to_string()), Vec::new()),
             };
-            let mut frame = made.report;
+            let FrameResult { mesh, parts, report: mut frame } = made;
             frame.seconds.morph += fresh;
             frame.notes = notes.into_iter().filter(|n| !report.notes.contains(n)).collect();
             report.notes.extend(frame.notes.iter().cloned());
             frame.mean_volume(variant.mean_volume(t));
             let feet = variant.feet(t);
-            if let Some(mesh) = made.mesh.as_ref().filter(|_| !feet.is_empty()) {
-                frame.feet = Some(Feet::of(mesh, &made.parts, &feet, frame.voxel_mm));
+            if let Some(mesh) = mesh.as_ref().filter(|_| !feet.is_empty()) {
+                frame.feet = Some(Feet::of(mesh, &parts, &feet, frame.voxel_mm));
             }
-            let image = match &made.mesh {
+            drop(parts);
+            let image = match &mesh {
                 Some(mesh) => put(&mut frame, mesh, settings, job)?,
                 None => None,
             };
-            reel.add(t, made.mesh.as_ref(), image, job)?;
+            reel.add(t, mesh.as_ref(), image, job)?;
             told(&frame);
             report.frames.push(frame);
         }

@@ -339,6 +339,7 @@ fn made(
     let seconds = start.elapsed().as_secs_f64();
     let mut made = make(work, &|_| Ok(field.clone()), job)?;
     made.report.seconds.morph += seconds;
+    made.parts = Default::default();
     Ok((made, Some(field)))
 }
 
