@@ -355,11 +355,6 @@ fn uses(recipe: &Recipe) -> Result<BTreeMap<String, Use>, Problem> {
 }
 
 impl Use {
-    /// Whether hybrids draw on a part of it only: on some shapes here, on others there.
-    pub fn partly(&self) -> bool {
-        !self.everywhere
-    }
-
     fn add(&mut self, times: &[f64]) {
         for t in times {
             if !self.times.contains(t) {

@@ -356,7 +356,7 @@ pub(super) fn make(
     };
     let made = start.elapsed().as_secs_f64();
     let (field, volume) = if purpose.morphs || !purpose.alone {
-        sampled(exact.clone(), purpose.partly(), step, job)?
+        sampled(exact.clone(), purpose.everywhere, step, job)?
     } else {
         (exact.clone(), f64::NAN)
     };
@@ -406,14 +406,15 @@ fn options(entry: &ShapeEntry) -> MeshOptions {
     MeshOptions { thicken, sign, ..MeshOptions::default() }
 }
 
-/// The sampled form of a field at a fine step, mm; of one that is looked up in parts only, made in parts.
+/// The sampled form of a field at a fine step, mm; of one that is not looked up everywhere,
+/// made where it is.
 pub(super) fn sampled(
     exact: Shared,
-    partly: bool,
+    everywhere: bool,
     step: f64,
     job: &dyn Job,
 ) -> Result<(Shared, f64), Cancelled> {
-    let new = if partly { Sampled::on_demand } else { Sampled::new };
+    let new = if everywhere { Sampled::new } else { Sampled::on_demand };
     let sampled = new(exact, step, job)?;
     let volume = sampled.volume();
     Ok((Arc::new(sampled), volume))

@@ -77,7 +77,7 @@ impl Moment {
         if let Some(made) = self.sampled.get() {
             return Ok(made.clone());
         }
-        let made = sampled(self.exact.clone(), false, self.step, job)?;
+        let made = sampled(self.exact.clone(), true, self.step, job)?;
         Ok(self.sampled.get_or_init(|| made).clone())
     }
 }

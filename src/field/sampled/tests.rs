@@ -132,8 +132,9 @@ fn bounds_on_demand_hold_and_do_not_depend_on_what_was_asked() {
     let mut half = points(500, 12.0);
     let boxes: Vec<Aabb> =
         points(500, 75.0).map(|c| Aabb::around(c, half.next().unwrap().abs())).collect();
-    let before: Vec<Interval> = boxes.iter().map(|b| s.bound(b)).collect();
     let left = s.bytes().1;
+    let before: Vec<Interval> = boxes.iter().map(|b| s.bound(b)).collect();
+    assert_eq!(s.bytes().1, left, "bounds made leaves");
     let unit: Vec<DVec3> = points(40, 1.0).collect();
     for (b, f) in boxes.iter().zip(&before) {
         for u in &unit {
@@ -141,7 +142,7 @@ fn bounds_on_demand_hold_and_do_not_depend_on_what_was_asked() {
             assert!(f.contains(s.value(p)), "{b:?}: {} not in {f:?}", s.value(p));
         }
     }
-    assert!(s.bytes().1 < left, "bounds made leaves, or values none");
+    assert!(s.bytes().1 < left, "values made no leaves");
     assert!(boxes.iter().zip(before).all(|(b, f)| s.bound(b) == f));
 }
 
