@@ -5,8 +5,10 @@ use crate::num::Aabb;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// What the tree's winding number is off by at most where it is not refined, with room.
-const TREE_ERROR: f64 = 0.05;
+/// What the tree's rough winding number is off by at most, with room, and how far the coarse one is from
+/// that.
+const ROUGH_ERROR: f64 = 0.05;
+const COARSE_ERROR: f64 = 0.15;
 
 /// Where a mesh is solid. Closed shells count first: with w1 their winding number, rounded, and
 /// w2 that of the open shells, a point is inside where w1 >= 1 or w1 + w2 >= 1/2, and never
@@ -137,24 +139,31 @@ impl Inside {
         if self.open.is_empty() {
             return asked;
         }
-        let most = 0.5 - TREE_ERROR;
+        let most = 0.5 - ROUGH_ERROR;
         let change = |(&centre, r): (&DVec3, &Option<f64>)| {
             r.map_or(f64::INFINITY, |r| self.rim.variation(centre, r, most / r) * r)
         };
         let changes: Vec<f64> = at.iter().zip(radii).map(change).collect();
         let open = asked & which(at, |i, _| changes[i] < most);
         let rest = open & !seen.of;
-        let more = if rest == 0 { seen.numbers } else { self.open.roughly_of(at, rest) };
-        let sharp = |i: usize, _| {
-            let number = if seen.of >> i & 1 == 1 { seen.numbers[i] } else { more[i] };
+        let more = if rest == 0 { seen.numbers } else { self.open.coarsely_of(at, rest) };
+        // how far it stays off one half, with a number that is `room` better than it needs to be
+        let off = |i: usize, number: f64, room: f64| {
             let part = (number - 0.5).rem_euclid(1.0);
-            changes[i] + TREE_ERROR < part.min(1.0 - part)
+            changes[i] + ROUGH_ERROR + room < part.min(1.0 - part)
         };
-        open & which(at, sharp)
+        let coarse = |i: usize| if seen.of >> i & 1 == 1 { seen.numbers[i] } else { more[i] };
+        let sharp = open & which(at, |i, _| off(i, coarse(i), COARSE_ERROR));
+        let doubt = open & !sharp & which(at, |i, _| off(i, coarse(i), -COARSE_ERROR));
+        if doubt == 0 {
+            return sharp;
+        }
+        let rough = self.open.roughly_of(at, doubt);
+        sharp | doubt & which(at, |i, _| off(i, rough[i], 0.0))
     }
 }
 
-/// Winding numbers of the open shells at some of eight points, roughly.
+/// Winding numbers of the open shells at some of eight points, coarsely.
 #[derive(Default)]
 struct Seen {
     /// A bit for each point whose number is known.

@@ -98,7 +98,10 @@ pub(super) fn right(points: &[DVec3], faces: &mut [[u32; 3]], shells: &[Shell]) 
             let w = winding[j].get_or_insert_with(|| {
                 Winding::new(&shells[j].faces.iter().map(corners).collect::<Vec<_>>())
             });
-            let inside = |&p: &DVec3| w.number(p, WITHIN).abs() >= WITHIN;
+            let inside = |&p: &DVec3| {
+                let number = w.number(p, WITHIN);
+                number >= WITHIN || number < 0.0 && w.number(p, -WITHIN) <= -WITHIN
+            };
             all[i].probes.iter().all(inside)
         });
         turn[i] = match container {
