@@ -166,7 +166,7 @@ pub fn run(
     Ok(report)
 }
 
-/// Writes the mesh and the picture of a frame, and gives the picture.
+/// Writes the mesh and the picture of a frame, side by side, and gives the picture.
 fn put(
     frame: &mut FrameReport,
     mesh: &mesh::TriMesh,
@@ -174,32 +174,43 @@ fn put(
     job: &dyn Job,
 ) -> Result<Option<Image>, RunError> {
     crate::job::check(job)?;
-    let path = settings.names.mesh(&frame.hybrid, frame.t);
-    job.stage("write");
+    let file = settings.names.mesh(&frame.hybrid, frame.t);
+    let picture = settings.names.picture(&frame.hybrid, frame.t);
+    job.stage(if picture.is_some() { "write and draw" } else { "write" });
+    files::folder_of(&file)?;
+    picture.as_ref().map_or(Ok(()), |picture| files::folder_of(picture))?;
     let start = Instant::now();
-    files::folder_of(&path)?;
-    match mesh::write(&path, mesh, &settings.note(), settings.force) {
+    let write = || {
+        let written = mesh::write(&file, mesh, &settings.note(), settings.force);
+        (written, start.elapsed().as_secs_f64())
+    };
+    let draw = |picture: &Path| {
+        let drawn = render(mesh, &settings.style).and_then(|image| {
+            save_png(picture, &image, settings.force)?;
+            Ok(image)
+        });
+        (drawn, start.elapsed().as_secs_f64())
+    };
+    // on one thread, the memory of what was made before is used again
+    let ((written, writing), drawn) = match &picture {
+        Some(picture) => rayon::join(write, || Some((picture, draw(picture)))),
+        None => (write(), None),
+    };
+    frame.seconds.write = writing;
+    match written {
         Ok(bytes) => {
-            frame.file = Some(path.display().to_string());
+            frame.file = Some(file.display().to_string());
             frame.file_bytes = Some(bytes);
         }
         Err(e) => frame.error = Some(e.to_string()),
     }
-    frame.seconds.write = start.elapsed().as_secs_f64();
-    let Some(path) = settings.names.picture(&frame.hybrid, frame.t) else {
+    let Some((picture, (drawn, drawing))) = drawn else {
         return Ok(None);
     };
-    job.stage("picture");
-    let start = Instant::now();
-    files::folder_of(&path)?;
-    let drawn = render(mesh, &settings.style).and_then(|image| {
-        save_png(&path, &image, settings.force)?;
-        Ok(image)
-    });
-    frame.seconds.picture = start.elapsed().as_secs_f64();
+    frame.seconds.picture = drawing;
     match drawn {
         Ok(image) => {
-            frame.picture = Some(path.display().to_string());
+            frame.picture = Some(picture.display().to_string());
             Ok(Some(image))
         }
         Err(e) => {

@@ -147,7 +147,7 @@ pub fn predict(draft: &Draft, picture: Option<[u32; 2]>) -> Prediction {
         lattice: &Lattice::covering(&draft.domain(), h),
         taken: taken(),
         held: sampled_bytes(draft, h),
-        passing: (surfaces.max(draft.largest_mesh() as f64) * FIELD_BYTES)
+        passing: (surfaces.max(draft.faces_at_once() as f64) * FIELD_BYTES)
             .max(draft.method_bytes()),
         making: 0.0,
         free: 0.0,

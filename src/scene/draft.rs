@@ -5,7 +5,7 @@ use super::body::Body;
 use super::live::LiveShape;
 use super::live::{self, Exact, Placed, Stop, Want};
 use super::variant::{Parts, Variant, asked};
-use super::{Scene, SceneError, mesh_element, pair, plan, scheme};
+use super::{Scene, SceneError, mesh_element, pair, pairs, plan, scheme};
 use crate::element::Element;
 use crate::grid::{BRICK, Lattice};
 use crate::job::{self, Job};
@@ -51,25 +51,28 @@ impl Draft {
         let featured = auto::with_features(recipe, &source, beside, job)?;
         let Featured { recipe, found, ready } = featured;
         let uses = uses(&recipe).map_err(|p| source.locate(p))?;
-        let mut placed: Vec<Placed> = Vec::with_capacity(uses.len());
         // those that stand like another come after it
-        let like = |n: &&String| matches!(recipe.shapes[*n].place, PlainOr::Table(_));
-        let (second, first): (Vec<&String>, Vec<&String>) = uses.keys().partition(like);
-        let count = first.len() + second.len();
-        for (i, &name) in first.iter().chain(&second).enumerate() {
+        let like = |n: &String| match &recipe.shapes[n].place {
+            PlainOr::Table(PlaceLike { like }) => Some(like.clone()),
+            PlainOr::Plain(_) => None,
+        };
+        let (second, first): (Vec<&String>, Vec<&String>) =
+            uses.keys().partition(|&n| like(n).is_some());
+        let load = |name: &String, like: Option<Aabb>| {
+            let (at, entry) = (join("shapes", name), &recipe.shapes[name]);
+            let want = Want { like, times: &uses[name].times, solid: true };
+            live::load(name, entry, beside, &want, &at)
+                .map_err(|p| SceneError::from(source.locate(p)))
+        };
+        let short = |n: &&String| pairs::is_short(&recipe.shapes[*n], beside);
+        let alone = |n: &String, _: &dyn Job| load(n, None);
+        let mut placed = pairs::in_pairs(first, ("read", |n| n), short, job, alone)?;
+        for name in second {
             job::check(job)?;
-            job.done(i as f64 / count as f64);
-            let at = join("shapes", name);
-            let entry = &recipe.shapes[name];
-            let box_ = match &entry.place {
-                PlainOr::Table(PlaceLike { like }) => {
-                    placed.iter().find(|p| p.name == *like).map(|p| p.stands)
-                }
-                PlainOr::Plain(_) => None,
-            };
-            let want = Want { like: box_, times: &uses[name].times, solid: true };
-            let shape = live::load(name, entry, beside, &want, &at);
-            placed.push(shape.map_err(|p| source.locate(p))?);
+            job.stage(&format!("read {name}"));
+            let like = like(name);
+            let box_ = placed.iter().find(|p| Some(&p.name) == like.as_ref()).map(|p| p.stands);
+            placed.push(load(name, box_)?);
         }
         placed.sort_by(|a, b| a.name.cmp(&b.name));
         let step = step(&recipe.grid, longest(&placed));
@@ -96,13 +99,9 @@ impl Draft {
         self.placed.iter().map(|p| p.area).collect()
     }
 
-    /// Triangles of the largest mesh among the shapes.
-    pub fn largest_mesh(&self) -> usize {
-        let faces = |p: &Placed| match &p.body {
-            Body::Mesh(mesh) => mesh.faces.len(),
-            _ => 0,
-        };
-        self.placed.iter().map(faces).max().unwrap_or(0)
+    /// Triangles of meshes whose fields are made at once, at most.
+    pub fn faces_at_once(&self) -> usize {
+        pairs::faces_at_once(&self.placed)
     }
 
     /// Area of the largest surface among the shapes, mm².
@@ -214,19 +213,22 @@ impl Draft {
         fits(&Lattice::covering(&box_.grow(padding), step)).map_err(locate)?;
         let meshes = mesh_element::read_all(&recipe.features, &beside, job).map_err(locate)?;
         let (mut notes, mut inputs, mut shapes) = (found, Vec::new(), Vec::new());
-        for shape in placed {
-            job.stage(&format!("shape {}", shape.name));
-            notes.extend_from_slice(&shape.notes);
-            inputs.extend_from_slice(&shape.inputs);
+        let placed = placed.into_iter().map(|p| (ready.remove(&p.name), p)).collect();
+        let light =
+            |(ready, p): &(Option<Exact>, Placed)| ready.is_none() && pairs::is_light(&p.body);
+        let make = |(ready, shape): (Option<Exact>, Placed), job: &dyn Job| {
             let (entry, purpose) = (&recipe.shapes[&shape.name], &uses[&shape.name]);
-            let ready = ready.remove(&shape.name);
-            let made =
-                live::make(shape, entry, purpose, step, ready, job).map_err(|stop| match stop {
-                    Stop::Problem(p) => locate(p),
-                    Stop::Cancelled(c) => c.into(),
-                });
-            let (shape, found) = made?;
-            notes.extend(found);
+            let known = (shape.notes.clone(), shape.inputs.clone());
+            let made = live::make(shape, entry, purpose, step, ready, job);
+            made.map(|made| (known, made)).map_err(|stop| match stop {
+                Stop::Problem(p) => locate(p),
+                Stop::Cancelled(c) => c.into(),
+            })
+        };
+        for made in pairs::in_pairs(placed, ("shape", |p| &p.1.name), light, job, make)? {
+            let ((said, files), (shape, found)) = made;
+            notes.extend(said.into_iter().chain(found));
+            inputs.extend(files);
             shapes.push(shape);
         }
         let searches = self::searches(&mut recipe, &shapes, &meshes, job).map_err(|e| match e {

@@ -12,6 +12,7 @@ mod live;
 mod mesh_element;
 mod moving;
 mod pair;
+mod pairs;
 mod place;
 mod plan;
 mod rows;
