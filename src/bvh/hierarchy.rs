@@ -2,8 +2,10 @@
 //!
 //! The builder joins what fits best; among thousands of boxes that fit equally well it finds one pair a
 //! round, and takes as many rounds as there are boxes. Boxes that are nearly the same are therefore
-//! bundled before and parted after, half by half: no other order would be better. What has no such crowd
-//! gets the builder's tree as it is.
+//! bundled before and parted after, half by half: no other order would be better.
+//!
+//! The builder works on one thread. Many boxes are therefore parted first, from the root down, and the
+//! builder joins those of each part; where they are parted depends on the boxes alone.
 
 use glam::Vec3A;
 use obvhs::BvhBuildParams;
@@ -20,20 +22,117 @@ const STEP: f32 = 1.0 / 4096.0;
 /// Most primitives of a leaf of a bundle; as the builder has them.
 const LEAF: u32 = 8;
 
+/// Boxes that are not parted further.
+const PART: usize = 1 << 14;
+/// Stretches of an axis between which they may be.
+const BINS: usize = 16;
+
 /// The tree over some boxes.
 pub fn hierarchy(boxes: &[Aabb], params: BvhBuildParams) -> Bvh2 {
     let bundles = if crowded(boxes) { bundles(boxes) } else { vec![] };
     // a bundle for each box is none
     if bundles.len() == boxes.len() || bundles.is_empty() {
-        return build_bvh2(boxes, params, &mut Default::default());
+        return grown(boxes, params);
     }
     let hull = |bundle: &Vec<u32>| {
         let all = bundle.iter().map(|&i| boxes[i as usize]);
         all.fold(Aabb::empty(), |hull, b| hull.union(&b))
     };
     let hulls: Vec<Aabb> = bundles.iter().map(hull).collect();
-    let mut tree = build_bvh2(&hulls, params, &mut Default::default());
+    let mut tree = grown(&hulls, params);
     unpack(&mut tree, &bundles, boxes);
+    tree
+}
+
+/// The tree over boxes without crowds.
+fn grown(boxes: &[Aabb], params: BvhBuildParams) -> Bvh2 {
+    let parts = if boxes.len() > PART { parted(boxes) } else { None };
+    let Some([a, b]) = parts else {
+        return build_bvh2(boxes, params, &mut Default::default());
+    };
+    let grow = |part: &[u32]| {
+        let own: Vec<Aabb> = part.iter().map(|&i| boxes[i as usize]).collect();
+        let mut tree = grown(&own, params);
+        tree.primitive_indices.iter_mut().for_each(|i| *i = part[*i as usize]);
+        tree
+    };
+    let (a, b) = rayon::join(|| grow(&a), || grow(&b));
+    joined(a, b)
+}
+
+/// Boxes whose middles lie in some stretch of an axis.
+#[derive(Clone, Copy)]
+struct Bin {
+    hull: Aabb,
+    count: usize,
+}
+
+impl Bin {
+    fn with(self, other: &Self) -> Self {
+        let count = self.count + other.count;
+        Self { hull: if count == 0 { self.hull } else { self.hull.union(&other.hull) }, count }
+    }
+
+    /// What a box costs that is met as often as its area is large, for each thing in it.
+    fn cost(&self) -> f32 {
+        if self.count == 0 { 0.0 } else { self.hull.half_area() * self.count as f32 }
+    }
+}
+
+/// Boxes in two parts by their middles, each of them a quarter at least, of least area for what is in
+/// them; none where the middles tell nothing apart.
+fn parted(boxes: &[Aabb]) -> Option<[Vec<u32>; 2]> {
+    let middles =
+        boxes.iter().fold(Aabb::empty(), |all, b| all.union(&Aabb::from_point(b.center())));
+    let scale = Vec3A::splat(BINS as f32) / middles.diagonal();
+    let places = |b: &Aabb| {
+        let place = (b.center() - middles.min) * scale;
+        place.to_array().map(|x| (x as usize).min(BINS - 1))
+    };
+    let none = Bin { hull: Aabb::empty(), count: 0 };
+    let mut bins = [[none; BINS]; 3];
+    for b in boxes {
+        for (bins, place) in bins.iter_mut().zip(places(b)) {
+            bins[place] = bins[place].with(&Bin { hull: *b, count: 1 });
+        }
+    }
+    let mut best: Option<(f32, usize, usize)> = None;
+    for (axis, bins) in bins.iter().enumerate() {
+        for cut in 1..BINS {
+            let [low, high] = [&bins[..cut], &bins[cut..]]
+                .map(|some| some.iter().fold(none, |all, b| all.with(b)));
+            let fair = low.count.min(high.count) * 4 >= boxes.len();
+            let cost = low.cost() + high.cost();
+            if fair && best.is_none_or(|(least, ..)| cost < least) {
+                best = Some((cost, axis, cut));
+            }
+        }
+    }
+    let (_, axis, cut) = best?;
+    let (low, high) =
+        (0..boxes.len() as u32).partition(|&i| places(&boxes[i as usize])[axis] < cut);
+    Some([low, high])
+}
+
+/// A tree of two.
+fn joined(a: Bvh2, b: Bvh2) -> Bvh2 {
+    let mut tree = Bvh2 { max_depth: a.max_depth.max(b.max_depth) + 1, ..Bvh2::default() };
+    let (roots, nodes_a) = ([a.nodes[0], b.nodes[0]], a.nodes.len() as u32);
+    let prims_a = a.primitive_indices.len() as u32;
+    // the root; those of the two; what is under the first, then what is under the second
+    let moved = |node: &Bvh2Node, nodes: u32, prims: u32| {
+        let by = if node.is_leaf() { prims } else { nodes };
+        Bvh2Node::new(node.aabb, node.prim_count, node.first_index + by)
+    };
+    let (of_a, of_b) = ((2, 0), (nodes_a + 1, prims_a));
+    tree.nodes.reserve(a.nodes.len() + b.nodes.len() + 1);
+    tree.nodes.push(Bvh2Node::new(roots[0].aabb.union(&roots[1].aabb), 0, 1));
+    tree.nodes.push(moved(&roots[0], of_a.0, of_a.1));
+    tree.nodes.push(moved(&roots[1], of_b.0, of_b.1));
+    tree.nodes.extend(a.nodes[1..].iter().map(|n| moved(n, of_a.0, of_a.1)));
+    tree.nodes.extend(b.nodes[1..].iter().map(|n| moved(n, of_b.0, of_b.1)));
+    tree.primitive_indices = a.primitive_indices;
+    tree.primitive_indices.extend(b.primitive_indices);
     tree
 }
 
@@ -138,7 +237,13 @@ mod tests {
 
     #[test]
     fn every_primitive_is_in_one_leaf_and_within_its_boxes() {
-        for triangles in [crowd(0), crowd(CROWD), crowd(CROWD + 1), crowd(3000)] {
+        let spread = |n: usize| -> Vec<[DVec3; 3]> {
+            let at = |i: usize| dvec3((i % 97) as f64, (i % 89) as f64, (i % 83) as f64) * 11.0;
+            (0..n).map(|i| [at(i), at(i) + DVec3::X, at(i) + DVec3::Y]).collect()
+        };
+        let many = [spread(PART), spread(PART + 1), spread(5 * PART)];
+        let few = [crowd(0), crowd(CROWD), crowd(CROWD + 1), crowd(3000)];
+        for triangles in few.into_iter().chain(many) {
             let boxes: Vec<Aabb> =
                 triangles.iter().map(|t| Aabb::from_points(&t.map(|p| p.as_vec3a()))).collect();
             let tree = hierarchy(&boxes, BvhBuildParams::fast_build());
