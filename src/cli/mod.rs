@@ -102,6 +102,9 @@ struct Making {
     json: bool,
 }
 
+/// Stack of a thread, bytes: that of a program's first one.
+const STACK: usize = 8 << 20;
+
 /// Runs the command and gives its exit code.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -109,12 +112,13 @@ pub fn main() -> ExitCode {
 }
 
 fn work(cli: Cli) -> ExitCode {
-    if let Some(n) = cli.common.threads {
-        // the pool is made here first, so this cannot fail
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(n as usize).build_global();
-    }
+    let threads = cli.common.threads.map_or(0, |n| n as usize);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
+    // the pool is made here first, so this cannot fail
+    let _ = pool.build_global();
     let watch = Watch::new(&cli.common);
-    let done = match cli.command {
+    // one of the threads that work does this too: each has memory of its own to use again
+    let done = rayon::scope(|_| match cli.command {
         Command::Morph(c) => c.run(&watch),
         Command::Run(c) => c.run(&watch),
         Command::Compare(c) => c.run(&watch),
@@ -126,7 +130,7 @@ fn work(cli: Cli) -> ExitCode {
         Command::Schema(c) => c.run(),
         Command::Completions(c) => c.run(),
         Command::Man(c) => c.run(),
-    };
+    });
     watch.close();
     match done {
         Ok(()) => ExitCode::SUCCESS,
