@@ -4,6 +4,7 @@
 //! a misjudged side changes the result by round-off only. Every distance in this crate goes
 //! through [`Tri::distance2`], one point or eight at a time, so all queries agree exactly.
 
+use crate::num::Aabb;
 use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
 use glam::DVec3;
 
@@ -283,6 +284,16 @@ impl<S: Simd> Points<S> {
         }
         let lanes = |x| f64x8::simd_from(s, x);
         Self { x: lanes(x), y: lanes(y), z: lanes(z) }
+    }
+
+    /// Distances from a box, 0 inside.
+    #[inline(always)]
+    pub(super) fn distances(&self, b: &Aabb) -> f64x8<S> {
+        let s = self.x.token();
+        let x = self.x - self.x.max(f64x8::splat(s, b.min.x)).min(f64x8::splat(s, b.max.x));
+        let y = self.y - self.y.max(f64x8::splat(s, b.min.y)).min(f64x8::splat(s, b.max.y));
+        let z = self.z - self.z.max(f64x8::splat(s, b.min.z)).min(f64x8::splat(s, b.max.z));
+        (x * x + y * y + z * z).sqrt()
     }
 
     /// The ways from a triangle.

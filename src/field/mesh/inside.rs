@@ -140,10 +140,11 @@ impl Inside {
             return asked;
         }
         let most = 0.5 - ROUGH_ERROR;
-        let change = |(&centre, r): (&DVec3, &Option<f64>)| {
-            r.map_or(f64::INFINITY, |r| self.rim.variation(centre, r, most / r) * r)
-        };
-        let changes: Vec<f64> = at.iter().zip(radii).map(change).collect();
+        let radius = |i: usize| radii.get(i).copied().flatten().unwrap_or(0.0);
+        let balls: Vec<(DVec3, f64)> = (0..).map(radius).zip(at).map(|(r, &p)| (p, r)).collect();
+        let allowed = std::array::from_fn(|i| most / radius(i));
+        let rates = self.rim.variations(&balls, asked, allowed);
+        let changes: [f64; Winding::LANES] = std::array::from_fn(|i| rates[i] * radius(i));
         let open = asked & which(at, |i, _| changes[i] < most);
         let rest = open & !seen.of;
         let more = if rest == 0 { seen.numbers } else { self.open.coarsely_of(at, rest) };
