@@ -9,6 +9,48 @@ pub(super) struct Block<const N: usize> {
     pub samples: Vec<f32>,
 }
 
+/// The samples of a brick and the first ones of the next bricks.
+pub(super) struct Closed {
+    /// x fastest.
+    pub samples: [f32; SIDE * SIDE * SIDE],
+}
+
+/// Samples along a side of [`Closed`].
+pub(super) const SIDE: usize = 9;
+
+impl Closed {
+    /// Whatever lies on the border of the lattice or beyond is outside.
+    pub(super) fn gather(bricks: &Bricks<f32>, b: [u32; 3]) -> Self {
+        let fill = bricks.lattice.step as f32;
+        let mut closed = Self { samples: [fill; SIDE * SIDE * SIDE] };
+        if on_border(&bricks.lattice, first(b), SIDE) {
+            bricks.cube(first(b), SIDE, -fill, fill, &mut closed.samples);
+            put_outside(&bricks.lattice, first(b), SIDE, &mut closed.samples);
+            return closed;
+        }
+        let whole = [-fill; 512];
+        let samples: [Option<&[f32; 512]>; 8] = std::array::from_fn(|d| {
+            let up = [0, 1, 2].map(|a| b[a] + (d >> a & 1) as u32);
+            match bricks.brick(up)? {
+                Brick::Band(samples) => Some(&**samples),
+                Brick::Inside => Some(&whole),
+                Brick::Outside => None,
+            }
+        });
+        for (n, row) in closed.samples.chunks_exact_mut(SIDE).enumerate() {
+            let (y, z) = (n % SIDE, n / SIDE);
+            let (own, at) = ((y >> 3) << 1 | (z >> 3) << 2, 8 * (y & 7) + 64 * (z & 7));
+            if let Some(samples) = samples[own] {
+                row[..8].copy_from_slice(&samples[at..at + 8]);
+            }
+            if let Some(samples) = samples[own | 1] {
+                row[8] = samples[at];
+            }
+        }
+        closed
+    }
+}
+
 /// The first sample of brick `b`.
 pub(super) fn first(b: [u32; 3]) -> [i64; 3] {
     b.map(|n| i64::from(n) * i64::from(BRICK))
@@ -22,15 +64,24 @@ impl<const N: usize> Block<N> {
         let fill = bricks.lattice.step as f32;
         let mut samples = vec![fill; N * N * N];
         bricks.cube(lo, N, -fill, fill, &mut samples);
-        let reaches = |a: usize| lo[a] + N as i64 >= i64::from(bricks.lattice.size[a]);
-        if (0..3).any(|a| lo[a] <= 0 || reaches(a)) {
-            for (n, row) in samples.chunks_exact_mut(N).enumerate() {
-                let at = [lo[0], lo[1] + (n % N) as i64, lo[2] + (n / N) as i64];
-                put_border_outside(&bricks.lattice, at, row);
-            }
+        if on_border(&bricks.lattice, lo, N) {
+            put_outside(&bricks.lattice, lo, N, &mut samples);
         }
         let inside = samples.iter().filter(|&&v| v < 0.0).count();
         if inside == 0 || inside == samples.len() { None } else { Some(Self { samples }) }
+    }
+}
+
+/// Whether the cube of `side` samples from `lo` on reaches the border of the lattice.
+fn on_border(lattice: &Lattice, lo: [i64; 3], side: usize) -> bool {
+    (0..3).any(|a| lo[a] <= 0 || lo[a] + side as i64 >= i64::from(lattice.size[a]))
+}
+
+/// What lies on the border in such a cube, or beyond, becomes outside.
+fn put_outside(lattice: &Lattice, lo: [i64; 3], side: usize, samples: &mut [f32]) {
+    for (n, row) in samples.chunks_exact_mut(side).enumerate() {
+        let at = [lo[0], lo[1] + (n % side) as i64, lo[2] + (n / side) as i64];
+        put_border_outside(lattice, at, row);
     }
 }
 

@@ -1,6 +1,6 @@
 //! A cell of the rounded lattice and the points that the surface has in it.
 
-use super::block::{Block, first};
+use super::block::{Closed, SIDE, first};
 use super::loops::{Edge, Patches};
 use crate::grid::{Lattice, ulp};
 use glam::DVec3;
@@ -12,14 +12,11 @@ const MARGIN: f64 = 1e-3;
 /// The same in f32 ulps of the coordinate: rounding moves a point by half of one.
 const ULPS: f64 = 16.0;
 
-/// The samples of a brick and the first ones of the next bricks.
-pub(super) type Closed = Block<9>;
-
 /// The values at the corners of a cell.
 pub(super) fn values(block: &Closed, [x, y, z]: [usize; 3]) -> [f64; 8] {
     std::array::from_fn(|n| {
         let [x, y, z] = [x + (n & 1), y + (n >> 1 & 1), z + (n >> 2)];
-        f64::from(block.samples[x + 9 * (y + 9 * z)])
+        f64::from(block.samples[x + SIDE * (y + SIDE * z)])
     })
 }
 

@@ -3,13 +3,13 @@
 //! A point on an edge belongs to the brick of the edge's first sample, an apex to the brick of its
 //! cell's; so each has one number, whichever cell asks.
 
-use super::block::{candidates, cut};
-use super::cell::{Cell, Closed, Planes, values};
+use super::block::{Closed, SIDE, candidates, cut};
+use super::cell::{Cell, Planes, values};
 use super::loops::{Edge, PATCHES, Patches};
 use crate::grid::Bricks;
 use crate::job::{Cancelled, Job, check};
 use crate::mesh::TriMesh;
-use glam::DVec3;
+use fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
 use rayon::prelude::*;
 
 /// Which patches get an apex.
@@ -39,17 +39,35 @@ impl Apexes {
     }
 }
 
-/// The corners of a cell that are inside, for all cells of a brick.
-struct Signs([[u16; 9]; 9]);
+/// The corners of a cell that are inside, for all cells of a brick: a bit for each sample of a row.
+struct Signs([[u16; SIDE]; SIDE]);
+
+/// The bits of a row.
+const ROW: u16 = (1 << SIDE) - 1;
 
 impl Signs {
-    fn new(block: &Closed) -> Self {
-        let mut rows = [[0; 9]; 9];
-        for (n, row) in block.samples.chunks_exact(9).enumerate() {
-            let bits = row.iter().rev().fold(0, |bits, &v| bits << 1 | u16::from(v < 0.0));
-            rows[n / 9][n % 9] = bits;
-        }
-        Self(rows)
+    /// None where all samples have one sign.
+    fn new(block: &Closed) -> Option<Self> {
+        let rows = dispatch!(Level::new(), s => rows(s, block));
+        let all = rows.as_flattened().iter();
+        let (some, each) = all.fold((0, ROW), |(some, each), r| (some | r, each & r));
+        (some != 0 && each != ROW).then_some(Self(rows))
+    }
+
+    /// The cells of the brick that hold both signs, x fastest: their numbers, places and corners.
+    fn mixed(&self) -> impl Iterator<Item = (usize, [usize; 3], u8)> {
+        let rows = (0..64).filter(|n| !self.same(n & 7, n >> 3));
+        let cells = rows.flat_map(|n| (0..8).map(move |x| (8 * n + x, [x, n & 7, n >> 3])));
+        cells.filter_map(|(n, at)| {
+            let config = self.config(at);
+            (config != 0 && config != 255).then_some((n, at, config))
+        })
+    }
+
+    /// Whether the samples of all cells of a row have one sign.
+    fn same(&self, y: usize, z: usize) -> bool {
+        let four = [self.0[z][y], self.0[z][y + 1], self.0[z + 1][y], self.0[z + 1][y + 1]];
+        four == [0; 4] || four == [ROW; 4]
     }
 
     /// Bit n is set where corner n of cell (x, y, z) is inside.
@@ -59,9 +77,14 @@ impl Signs {
     }
 }
 
-/// Cells of a brick, x fastest.
-fn cells() -> impl Iterator<Item = [usize; 3]> {
-    (0..512).map(|n| [n & 7, n >> 3 & 7, n >> 6])
+#[inline(always)]
+fn rows<S: Simd>(s: S, block: &Closed) -> [[u16; SIDE]; SIDE] {
+    let (mut rows, zero) = ([[0; SIDE]; SIDE], f32x8::splat(s, 0.0));
+    for (n, row) in block.samples.chunks_exact(SIDE).enumerate() {
+        let inside = f32x8::from_slice(s, &row[..8]).simd_lt(zero).to_bitmask();
+        rows[n / SIDE][n % SIDE] = inside as u16 | u16::from(row[8] < 0.0) << 8;
+    }
+    rows
 }
 
 /// Which of the three edges from corner 0 the surface crosses.
@@ -81,19 +104,21 @@ pub(super) struct Index {
 }
 
 impl Index {
-    fn new(brick: [u32; 3], block: &Closed, counts: &[[u32; 2]; 256]) -> Option<Self> {
-        let signs = Signs::new(block);
+    fn new(brick: [u32; 3], signs: &Signs, counts: &[[u32; 2]; 256]) -> Option<Self> {
         let mut tags = Box::new([0; 512]);
-        let (mut points, mut triangles) = (0, 0);
-        for (tag, cell) in tags.iter_mut().zip(cells()) {
-            let config = signs.config(cell);
+        let (mut points, mut triangles, mut done) = (0, 0, 0);
+        for (n, _, config) in signs.mixed() {
             let edges = crossed(config);
             // at most (3 + 4) * 512 points, so 13 bits hold the first
-            *tag = (points as u16) << 3 | edges;
+            let first = (points as u16) << 3;
+            tags[done..n].fill(first);
+            tags[n] = first | edges;
+            done = n + 1;
             let [apexes, faces] = counts[usize::from(config)];
             points += edges.count_ones() + apexes;
             triangles += faces;
         }
+        tags[done..].fill((points as u16) << 3);
         // a triangle may stand on points of other bricks alone
         let used = points > 0 || triangles > 0;
         used.then_some(Self { brick, tags, points, triangles })
@@ -126,7 +151,8 @@ impl<'a> Surface<'a> {
         let index = |&n: &usize| {
             check(job)?;
             let brick = bricks.place(n);
-            Ok(Closed::gather(bricks, brick, 0).and_then(|b| Index::new(brick, &b, &counts)))
+            let signs = Signs::new(&Closed::gather(bricks, brick));
+            Ok(signs.and_then(|signs| Index::new(brick, &signs, &counts)))
         };
         let indices = candidates(bricks, 0).par_iter().map(index).collect::<Result<Vec<_>, _>>()?;
         let indices: Vec<Index> = indices.into_iter().flatten().collect();
@@ -143,8 +169,9 @@ impl<'a> Surface<'a> {
     /// A mesh with all its points and faces, at zero.
     pub(super) fn blank(&self) -> TriMesh {
         let total = |of: fn(&Index) -> u32| self.indices.iter().map(|i| of(i) as usize).sum();
-        let points = vec![DVec3::ZERO; total(|i| i.points)];
-        TriMesh { points, faces: vec![[0; 3]; total(|i| i.triangles)] }
+        // the system has zeros, and gives them when they are first touched: by all threads
+        let points = bytemuck::zeroed_vec(total(|i| i.points));
+        TriMesh { points, faces: bytemuck::zeroed_vec(total(|i| i.triangles)) }
     }
 
     /// The parts that the bricks own of a list of one entry a point.
@@ -173,16 +200,11 @@ impl<'a> Surface<'a> {
     /// Shows all cells of a brick that hold both signs, in order.
     pub(super) fn visit(&self, n: usize, mut each: impl FnMut(&Cell, u8)) {
         let brick = self.indices[n].brick;
-        let Some(block) = Closed::gather(self.bricks, brick, 0) else {
-            return;
-        };
-        let signs = Signs::new(&block);
+        let block = Closed::gather(self.bricks, brick);
         let planes = Planes::new(&self.bricks.lattice, brick);
-        for at in cells() {
-            let config = signs.config(at);
-            if config != 0 && config != 255 {
-                each(&Cell { at, planes: &planes, values: values(&block, at) }, config);
-            }
+        let signs = Signs::new(&block);
+        for (_, at, config) in signs.iter().flat_map(Signs::mixed) {
+            each(&Cell { at, planes: &planes, values: values(&block, at) }, config);
         }
     }
 
