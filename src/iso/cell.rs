@@ -66,11 +66,12 @@ impl Cell<'_> {
         let axis = usize::from(edge.axis);
         let (a, b) = (self.values[usize::from(edge.corner)], self.values[usize::from(edge.end())]);
         let share = a / (a - b);
-        let margin = self.margin()[axis];
+        let margin = self.planes.margin[axis][self.at[axis]];
         let share = if share.is_finite() { share.clamp(margin, 1.0 - margin) } else { 0.5 };
-        let mut p = corner(edge.corner);
-        p[axis] = share;
-        p
+        let [x, y, z] = CORNERS[usize::from(edge.corner)];
+        // no store through an index: the numbers stay in registers
+        let of = |a: usize, other: f64| if a == axis { share } else { other };
+        DVec3::new(of(0, x), of(1, y), of(2, z))
     }
 
     /// The apex of a patch: the mean of its crossings; where the cell has no other patch, moved
@@ -132,6 +133,17 @@ impl Cell<'_> {
 }
 
 fn corner(n: u8) -> DVec3 {
-    let bit = |a: u8| f64::from(n >> a & 1);
-    DVec3::new(bit(0), bit(1), bit(2))
+    DVec3::from(CORNERS[usize::from(n)])
 }
+
+/// The corners of the unit cell.
+const CORNERS: [[f64; 3]; 8] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 0.0, 1.0],
+    [0.0, 1.0, 1.0],
+    [1.0, 1.0, 1.0],
+];

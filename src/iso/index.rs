@@ -54,20 +54,20 @@ impl Signs {
         (some != 0 && each != ROW).then_some(Self(rows))
     }
 
-    /// The cells of the brick that hold both signs, x fastest: their numbers, places and corners.
-    fn mixed(&self) -> impl Iterator<Item = (usize, [usize; 3], u8)> {
-        let rows = (0..64).filter(|n| !self.same(n & 7, n >> 3));
-        let cells = rows.flat_map(|n| (0..8).map(move |x| (8 * n + x, [x, n & 7, n >> 3])));
-        cells.filter_map(|(n, at)| {
-            let config = self.config(at);
-            (config != 0 && config != 255).then_some((n, at, config))
-        })
-    }
-
-    /// Whether the samples of all cells of a row have one sign.
-    fn same(&self, y: usize, z: usize) -> bool {
-        let four = [self.0[z][y], self.0[z][y + 1], self.0[z + 1][y], self.0[z + 1][y + 1]];
-        four == [0; 4] || four == [ROW; 4]
+    /// Shows the cells of the brick that hold both signs, x fastest: their numbers, places and corners.
+    fn mixed(&self, mut show: impl FnMut(usize, [usize; 3], u8)) {
+        for (y, z) in (0..8).flat_map(|z| (0..8).map(move |y| (y, z))) {
+            let four = [self.0[z][y], self.0[z][y + 1], self.0[z + 1][y], self.0[z + 1][y + 1]];
+            let some = four.iter().fold(0, |some, r| some | r | r >> 1);
+            let each = four.iter().fold(ROW, |each, r| each & r & r >> 1);
+            // a bit for each cell of the row
+            let mut mixed = some & !each & 0xff;
+            while mixed != 0 {
+                let x = mixed.trailing_zeros() as usize;
+                mixed &= mixed - 1;
+                show(x + 8 * (y + 8 * z), [x, y, z], self.config([x, y, z]));
+            }
+        }
     }
 
     /// Bit n is set where corner n of cell (x, y, z) is inside.
@@ -93,6 +93,9 @@ pub(super) fn crossed(config: u8) -> u16 {
     differs(1) | differs(2) << 1 | differs(4) << 2
 }
 
+/// How many bits of a number are set.
+const ONES: [u32; 8] = [0, 1, 1, 2, 1, 2, 2, 3];
+
 /// The surface's points of one brick: for each sample those on its three edges, then the apexes
 /// of its cell.
 pub(super) struct Index {
@@ -107,7 +110,7 @@ impl Index {
     fn new(brick: [u32; 3], signs: &Signs, counts: &[[u32; 2]; 256]) -> Option<Self> {
         let mut tags = Box::new([0; 512]);
         let (mut points, mut triangles, mut done) = (0, 0, 0);
-        for (n, _, config) in signs.mixed() {
+        signs.mixed(|n, _, config| {
             let edges = crossed(config);
             // at most (3 + 4) * 512 points, so 13 bits hold the first
             let first = (points as u16) << 3;
@@ -117,7 +120,7 @@ impl Index {
             let [apexes, faces] = counts[usize::from(config)];
             points += edges.count_ones() + apexes;
             triangles += faces;
-        }
+        });
         tags[done..].fill((points as u16) << 3);
         // a triangle may stand on points of other bricks alone
         let used = points > 0 || triangles > 0;
@@ -128,7 +131,7 @@ impl Index {
     /// that of the cell's first apex.
     fn point(&self, sample: usize, axis: u8) -> u32 {
         let tag = self.tags[sample];
-        u32::from(tag >> 3) + (tag & 7 & ((1 << axis) - 1)).count_ones()
+        u32::from(tag >> 3) + ONES[usize::from(tag & 7 & ((1 << axis) - 1))]
     }
 }
 
@@ -202,9 +205,10 @@ impl<'a> Surface<'a> {
         let brick = self.indices[n].brick;
         let block = Closed::gather(self.bricks, brick);
         let planes = Planes::new(&self.bricks.lattice, brick);
-        let signs = Signs::new(&block);
-        for (_, at, config) in signs.iter().flat_map(Signs::mixed) {
-            each(&Cell { at, planes: &planes, values: values(&block, at) }, config);
+        if let Some(signs) = Signs::new(&block) {
+            signs.mixed(|_, at, config| {
+                each(&Cell { at, planes: &planes, values: values(&block, at) }, config);
+            });
         }
     }
 
