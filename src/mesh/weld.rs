@@ -68,7 +68,7 @@ pub(super) fn distinct_in_f32(mesh: &TriMesh) -> bool {
     let all = (0..mesh.points.len() as u32).into_par_iter().filter(|&i| used[i as usize]);
     let mut keys: Vec<(u64, u32)> = all.map(|i| (hash(single(&i)), i)).collect();
     keys.par_sort_unstable();
-    keys.chunk_by(|a, b| a.0 == b.0).filter(|run| run.len() > 1).all(|run| {
+    keys.par_chunk_by(|a, b| a.0 == b.0).filter(|run| run.len() > 1).all(|run| {
         let mut here: Vec<[u64; 3]> = run.iter().map(|(_, i)| single(i)).collect();
         here.sort_unstable();
         here.windows(2).all(|pair| pair[0] != pair[1])
@@ -77,13 +77,19 @@ pub(super) fn distinct_in_f32(mesh: &TriMesh) -> bool {
 
 /// For each used point the first used point at the same position (itself, if there is no earlier).
 pub(crate) fn twins(points: &[DVec3], used: &[bool]) -> Vec<u32> {
-    // gathered in one list: many short ones, joined, would take twice the memory
-    let mut keys = Vec::with_capacity(used.iter().filter(|&&u| u).count());
-    let some = (0..points.len() as u32).filter(|&i| used[i as usize]);
-    keys.extend(some.map(|i| (hash(bits(points[i as usize])), i)));
+    let key = |i: u32| (hash(bits(points[i as usize])), i);
+    let all = 0..points.len() as u32;
+    let count = used.iter().filter(|&&u| u).count();
+    let mut keys = Vec::with_capacity(count);
+    if count == points.len() {
+        keys.par_extend(all.clone().into_par_iter().map(key));
+    } else {
+        // in one list: many short ones, joined, would take twice the memory
+        keys.extend(all.clone().filter(|&i| used[i as usize]).map(key));
+    }
     keys.par_sort_unstable();
-    let mut twin: Vec<u32> = (0..points.len() as u32).collect();
-    for run in keys.chunk_by_mut(|a, b| a.0 == b.0) {
+    let mut twin: Vec<u32> = all.collect();
+    for run in keys.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > 1) {
         let here = |k: &(u64, u32)| bits(points[k.1 as usize]);
         let first = here(&run[0]);
         if run.iter().any(|k| here(k) != first) {
