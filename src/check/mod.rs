@@ -131,12 +131,19 @@ pub fn sweep(mut mesh: TriMesh, smallest_share: f64, options: &Options) -> Swept
     let mut found = Found::of(&mesh);
     let mut crumbs = Crumbs::default();
     if smallest_share > 0.0
-        && let Some((left, dropped)) =
-            parts::swept(&mesh, &found.welded, &found.anatomy, smallest_share)
+        && let Some((dropped, stays)) = parts::crumbs(&found.welded, &found.anatomy, smallest_share)
     {
+        let Anatomy { topology, .. } = &found.anatomy;
+        let left = parts::left(&mesh, &topology.labels, &stays);
+        let known = found.welded.is_whole().then(|| topology.without(&stays, &left)).flatten();
         drop(found);
         (mesh, crumbs) = (left, dropped);
-        found = Found::of(&mesh);
+        found = match known {
+            Some(topology) => {
+                Found::with(&mesh, Welded::whole(&mesh), |mesh| Anatomy::with(mesh, topology))
+            }
+            None => Found::of(&mesh),
+        };
     }
     let pieces = parts::count(&found.anatomy.parts);
     let health = health(&mesh, &found, options);
@@ -155,10 +162,17 @@ struct Found<'a> {
 
 impl<'a> Found<'a> {
     fn of(mesh: &'a TriMesh) -> Self {
-        let welded = weld::weld(mesh);
+        Self::with(mesh, weld::weld(mesh), Anatomy::of)
+    }
+
+    fn with(
+        mesh: &'a TriMesh,
+        welded: Welded<'a>,
+        anatomy: impl FnOnce(&Welded) -> Anatomy + Send,
+    ) -> Self {
         let stand = || if welded.astray == 0 { stance(mesh) } else { None };
         let (anatomy, (sizes, stance)) =
-            rayon::join(|| Anatomy::of(&welded), || (Sizes::of(&welded), stand()));
+            rayon::join(|| anatomy(&welded), || rayon::join(|| Sizes::of(&welded), stand));
         Self { welded, anatomy, sizes, stance }
     }
 }

@@ -48,7 +48,11 @@ pub(super) struct Anatomy {
 
 impl Anatomy {
     pub fn of(welded: &Welded) -> Self {
-        let topology = topology(welded);
+        Self::with(welded, topology(welded))
+    }
+
+    /// Of a mesh whose topology is known.
+    pub fn with(welded: &Welded, topology: Topology) -> Self {
         let parts = parts_of(welded, &topology.labels, topology.components);
         Self { topology, parts }
     }
@@ -71,17 +75,18 @@ pub fn solid_pieces(mesh: &TriMesh) -> Pieces {
 pub fn drop_crumbs(mesh: &TriMesh, smallest_share: f64) -> (TriMesh, Crumbs) {
     let welded = weld(mesh);
     let found = Anatomy::of(&welded);
-    swept(mesh, &welded, &found, smallest_share)
-        .unwrap_or_else(|| (mesh.clone(), Crumbs::default()))
+    match crumbs(&welded, &found, smallest_share) {
+        Some((crumbs, stays)) => (left(mesh, &found.topology.labels, &stays), crumbs),
+        None => (mesh.clone(), Crumbs::default()),
+    }
 }
 
-/// [`drop_crumbs`] where there are any.
-pub(super) fn swept(
-    mesh: &TriMesh,
+/// The crumbs of a mesh, if it has any, and for each of its parts whether that stays.
+pub(super) fn crumbs(
     welded: &Welded,
     found: &Anatomy,
     smallest: f64,
-) -> Option<(TriMesh, Crumbs)> {
+) -> Option<(Crumbs, Vec<bool>)> {
     let Anatomy { topology, parts } = found;
     if parts.len() < 2 {
         return None;
@@ -107,8 +112,8 @@ pub(super) fn swept(
         return None;
     }
     crumbs.share = crumbs.volume_mm3 / whole;
-    let stays = |i: usize| !home[topology.labels[i] as usize].is_some_and(|home| crumb[home]);
-    Some((subset(mesh, stays), crumbs))
+    let stays = home.iter().map(|home| !home.is_some_and(|home| crumb[home])).collect();
+    Some((crumbs, stays))
 }
 
 pub(super) fn count(parts: &[Part]) -> Pieces {
@@ -135,6 +140,9 @@ fn parts_of(mesh: &Welded, labels: &[u32], components: usize) -> Vec<Part> {
 
 /// The solid that each part belongs to: itself for a solid, the innermost one round a cavity.
 fn homes(mesh: &Welded, labels: &[u32], parts: &[Part]) -> Vec<Option<usize>> {
+    if parts.iter().all(|part| part.volume_mm3 > 0.0) {
+        return (0..parts.len()).map(Some).collect();
+    }
     let mut solids: Vec<usize> = (0..parts.len()).filter(|&i| parts[i].volume_mm3 > 0.0).collect();
     solids.sort_by(|&i, &j| parts[i].volume_mm3.total_cmp(&parts[j].volume_mm3));
     let mut faces = vec![Vec::new(); parts.len()];
@@ -168,13 +176,14 @@ fn winding(mesh: &Welded, faces: &[usize], p: DVec3) -> f64 {
     faces.iter().map(angle).sum::<f64>() / (4.0 * PI)
 }
 
-/// The faces that stay, with the points they use, in their order. Faces that name points which
-/// are not there do not stay.
-fn subset(mesh: &TriMesh, stays: impl Fn(usize) -> bool) -> TriMesh {
+/// The faces of the parts that stay, with the points they use, in their order. Faces that name points
+/// which are not there do not stay.
+pub(super) fn left(mesh: &TriMesh, labels: &[u32], stays: &[bool]) -> TriMesh {
     let total = mesh.points.len();
     let valid = |f: &[u32; 3]| f.iter().all(|&v| (v as usize) < total);
-    let faces = mesh.faces.iter().enumerate().filter(|(i, f)| stays(*i) && valid(f));
-    let kept: Vec<[u32; 3]> = faces.map(|(_, f)| *f).collect();
+    let faces = mesh.faces.iter().zip(labels);
+    let kept: Vec<[u32; 3]> =
+        faces.filter(|(f, label)| stays[**label as usize] && valid(f)).map(|(f, _)| *f).collect();
     let mut name = vec![u32::MAX; total];
     kept.iter().flatten().for_each(|&v| name[v as usize] = 0);
     let mut points = Vec::new();

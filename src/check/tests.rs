@@ -263,6 +263,47 @@ fn cavities_and_crumbs() {
     assert_eq!(drop_crumbs(&large, 2.0), (large, Crumbs::default()));
 }
 
+/// What is known of a mesh without its crumbs is what is found when it is looked at anew: of a clean one,
+/// and of meshes that touch themselves, have holes, copies, or points twice.
+#[test]
+fn sweeping_tells_what_looking_again_tells() {
+    let at = |x: f64| {
+        let mut mesh = sphere(1);
+        mesh.transform(&DAffine3::from_translation(DVec3::X * x));
+        mesh
+    };
+    let clean = both(&both(&block([9.0; 3], [9.5; 3]), &torus(16)), &both(&at(30.0), &at(40.0)));
+    assert_eq!(look(&clean).floating_parts, Some(3));
+    let mut joined = clean.clone();
+    // two balls with one point
+    let (a, b) = (joined.faces[joined.faces.len() - 1][0], joined.faces[12][0]);
+    joined.points[a as usize] = joined.points[b as usize];
+    let mut holed = clean.clone();
+    holed.faces.pop();
+    let mut copied = clean.clone();
+    copied.faces.extend(clean.faces[..3].to_vec());
+    let mut turned = clean.clone();
+    turned.faces[20].swap(0, 1);
+    let mut unused = clean.clone();
+    unused.points.insert(0, DVec3::ZERO);
+    unused.faces.iter_mut().flatten().for_each(|v| *v += 1);
+    let mut soup = TriMesh::default();
+    for i in 0..clean.faces.len() as u32 {
+        soup.points.extend(clean.corners(i as usize));
+        soup.faces.push([3 * i, 3 * i + 1, 3 * i + 2]);
+    }
+    let options = Options { self_intersections: false };
+    for (n, mesh) in [clean, joined, holed, copied, turned, unused, soup].into_iter().enumerate() {
+        for share in [0.0, 1e-9, 1e-3, 0.05, 1.0] {
+            let (left, crumbs) = drop_crumbs(&mesh, share);
+            let swept = sweep(mesh.clone(), share, &options);
+            assert_eq!((&swept.mesh, swept.crumbs), (&left, crumbs), "{n} {share}");
+            assert_eq!(swept.health, inspect(&left, &options), "{n} {share}");
+            assert_eq!((swept.pieces, swept.parts), (solid_pieces(&left), parts(&left)));
+        }
+    }
+}
+
 #[test]
 fn the_same_on_any_number_of_threads() {
     let mesh = both(&torus(64), &sphere(3));

@@ -2,6 +2,7 @@
 
 use super::buckets::Buckets;
 use super::weld::Welded;
+use crate::mesh::TriMesh;
 
 /// Counts of everything a clean closed surface has none of, and its components.
 pub(super) struct Topology {
@@ -32,6 +33,32 @@ pub(super) struct Topology {
 }
 
 impl Topology {
+    /// That of what is left when only some components stay, if nothing is wrong with the mesh: then
+    /// they share no vertex.
+    pub fn without(&self, stays: &[bool], left: &TriMesh) -> Option<Self> {
+        let whole = self.closed && self.manifold_edges && self.oriented && !left.faces.is_empty();
+        let wrong = self.split_vertices + self.duplicates + self.opposed_edges;
+        if !whole || wrong > 0 {
+            return None;
+        }
+        // components are numbered by their first faces, in this order before and after
+        let mut components = 0;
+        let number = |&stays: &bool| {
+            let own = components;
+            components += u32::from(stays);
+            own
+        };
+        let numbers: Vec<u32> = stays.iter().map(number).collect();
+        let kept = self.labels.iter().filter(|&&label| stays[label as usize]);
+        Some(Self {
+            edges: left.faces.len() * 3 / 2,
+            vertices: left.points.len(),
+            labels: kept.map(|&label| numbers[label as usize]).collect(),
+            components: components as usize,
+            ..*self
+        })
+    }
+
     /// Total genus over the components; `None` unless closed and manifold.
     pub fn genus(&self) -> Option<i64> {
         let whole = self.closed && self.manifold_edges && self.split_vertices == 0;

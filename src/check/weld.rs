@@ -14,6 +14,19 @@ pub(super) struct Welded<'a> {
     pub astray: usize,
 }
 
+impl<'a> Welded<'a> {
+    /// A mesh whose points are distinct and all used.
+    pub fn whole(mesh: &'a TriMesh) -> Self {
+        let TriMesh { points, faces } = mesh;
+        Self { points: Cow::from(points), faces: Cow::from(faces), astray: 0 }
+    }
+
+    /// Whether it is the very mesh it was made from.
+    pub fn is_whole(&self) -> bool {
+        matches!((&self.points, &self.faces), (Cow::Borrowed(_), Cow::Borrowed(_)))
+    }
+}
+
 /// Joins points with the same coordinates (-0 counts as 0) and leaves out unused ones; the
 /// points that stay keep their order.
 pub(super) fn weld(mesh: &TriMesh) -> Welded<'_> {
@@ -31,7 +44,7 @@ pub(super) fn weld(mesh: &TriMesh) -> Welded<'_> {
     let first = twins(&mesh.points, &used);
     let alone = |(v, &first): (usize, &u32)| used[v] && first as usize == v;
     if astray == 0 && first.par_iter().enumerate().all(alone) {
-        return Welded { points: Cow::from(&mesh.points), faces: Cow::from(&mesh.faces), astray };
+        return Welded::whole(mesh);
     }
     let mut points = Vec::new();
     let mut name = vec![0_u32; total];
