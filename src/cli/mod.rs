@@ -20,6 +20,7 @@ mod surface;
 mod watch;
 
 use clap::{Args, Parser, Subcommand};
+use failure::Failure;
 use std::process::ExitCode;
 use watch::Watch;
 
@@ -79,6 +80,30 @@ enum Command {
     Man(shell::Man),
 }
 
+impl Command {
+    /// Does it.
+    fn run(self, watch: &Watch) -> Result<(), Failure> {
+        match self {
+            Self::Morph(c) => c.run(watch),
+            Self::Run(c) => c.run(watch),
+            Self::Compare(c) => c.run(watch),
+            Self::Check(c) => c.run(watch),
+            Self::Convert(c) => c.run(watch),
+            Self::Features(c) => c.run(watch),
+            Self::Picture(c) => c.run(watch),
+            Self::Surface(c) => c.run(watch),
+            Self::Schema(c) => c.run(),
+            Self::Completions(c) => c.run(),
+            Self::Man(c) => c.run(),
+        }
+    }
+
+    /// Whether it does without threads.
+    fn is_text(&self) -> bool {
+        matches!(self, Self::Schema(_) | Self::Completions(_) | Self::Man(_))
+    }
+}
+
 /// What commands that make files take.
 #[derive(Args, Clone, Debug)]
 struct Making {
@@ -112,25 +137,21 @@ pub fn main() -> ExitCode {
 }
 
 fn work(cli: Cli) -> ExitCode {
-    let threads = cli.common.threads.map_or(0, |n| n as usize);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
-    // the pool is made here first, so this cannot fail
-    let _ = pool.build_global();
     let watch = Watch::new(&cli.common);
-    // one of the threads that work does this too: each has memory of its own to use again
-    let done = rayon::scope(|_| match cli.command {
-        Command::Morph(c) => c.run(&watch),
-        Command::Run(c) => c.run(&watch),
-        Command::Compare(c) => c.run(&watch),
-        Command::Check(c) => c.run(&watch),
-        Command::Convert(c) => c.run(&watch),
-        Command::Features(c) => c.run(&watch),
-        Command::Picture(c) => c.run(&watch),
-        Command::Surface(c) => c.run(&watch),
-        Command::Schema(c) => c.run(),
-        Command::Completions(c) => c.run(),
-        Command::Man(c) => c.run(),
-    });
+    let done = if cli.command.is_text() {
+        cli.command.run(&watch)
+    } else {
+        let threads = cli.common.threads.map_or(0, |n| n as usize);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
+        match pool.build_global() {
+            // one of the threads that work does this too: each has memory of its own to use again
+            Ok(()) => rayon::scope(|_| cli.command.run(&watch)),
+            Err(why) => {
+                let why = format!("not enough memory to start threads: {why}");
+                Err(Failure::new(Failure::LIMIT, why))
+            }
+        }
+    };
     watch.close();
     match done {
         Ok(()) => ExitCode::SUCCESS,

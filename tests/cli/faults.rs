@@ -235,6 +235,21 @@ fn a_folder_that_cannot_be_written_is_said() {
     assert_eq!(folder.names(), ["low.obj", "tall.obj"]);
 }
 
+/// Threads whose stacks do not fit are refused in a line; what needs none is done.
+#[cfg(target_os = "linux")]
+#[test]
+fn more_threads_than_fit_are_refused() {
+    let folder = folder();
+    let limit = format!("ulimit -v {}", 400 * 1024);
+    let (code, text) = limited(&folder, &limit, &["check", "low.obj", "--threads", "400"]);
+    assert!(
+        code == Some(5) && text.contains("error: not enough memory to start threads"),
+        "{text}"
+    );
+    let (code, text) = limited(&folder, &limit, &["schema", "--threads", "400"]);
+    assert_eq!((code, text.as_str()), (Some(0), ""));
+}
+
 /// Whatever address space there is, and whatever the command: its result, or a refusal, but no death.
 #[cfg(target_os = "linux")]
 #[test]
