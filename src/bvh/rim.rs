@@ -112,6 +112,8 @@ impl Rim {
                 total = here.select(total + edge / (far * far), total);
             }
         }
+        // what was added last counts too
+        finite &= !(total.simd_gt(most).to_bitmask() as u8);
         let total: [f64; LANES] = (total / (4.0 * PI)).into();
         std::array::from_fn(|i| match () {
             () if finite >> i & 1 == 1 => total[i],
@@ -145,7 +147,7 @@ mod tests {
             let rim = Rim::new(&edges);
             let balls: Vec<(DVec3, f64)> =
                 balls.into_iter().map(|((x, y, z), r)| (dvec3(x, y, z), r)).collect();
-            let most = [1e3; LANES];
+            let most = [f64::INFINITY; LANES];
             let all = rim.variations(&balls, u8::MAX, most);
             let some = rim.variations(&balls, 0b101, most);
             for (i, &ball) in balls.iter().enumerate() {
